@@ -1,0 +1,23 @@
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/moclean)
+
+install(TARGETS moclean EXPORT moclean-targets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+
+# Every header but those only sources of their own folder include: the steps behind a backend, the
+# tools behind the readers, the text of the kernels.
+set(internal_headers "solve/(reference|opencl)/(robust_pca|svd)" "io/(text_scanner|file|frame_rate|extension)"
+                     "device/kernel_source")
+list(JOIN internal_headers "|" internal_headers)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/host/moclean DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+        FILES_MATCHING PATTERN "*.hpp" REGEX "/(${internal_headers})[.]hpp$" EXCLUDE)
+install(EXPORT moclean-targets NAMESPACE moclean:: DESTINATION ${package_dir})
+
+configure_package_config_file(cmake/moclean-config.cmake.in ${PROJECT_BINARY_DIR}/moclean-config.cmake
+                              INSTALL_DESTINATION ${package_dir})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/moclean-config-version.cmake
+                                 COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/moclean-config.cmake
+              ${PROJECT_BINARY_DIR}/moclean-config-version.cmake
+        DESTINATION ${package_dir})
