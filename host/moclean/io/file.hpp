@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+
+namespace moclean {
+
+/// The whole content of a file. Throws FileError if it cannot be opened or read.
+std::string read_file(const std::filesystem::path& file);
+
+/// A file that appears under its name only when it is complete.
+///
+/// Everything goes to a temporary file beside the target; commit() renames it. Without commit()
+/// the destructor removes the temporary file and the target stays as it was.
+class AtomicFile {
+ public:
+  /// Throws FileError if the target's folder does not exist or cannot be written.
+  explicit AtomicFile(std::filesystem::path target);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  /// Appends bytes. Throws FileError, e.g. when the disk is full.
+  void write(std::string_view bytes);
+
+  /// Puts the file in its place, over a file of that name. Throws FileError.
+  void commit();
+
+ private:
+  std::filesystem::path target_;
+  std::filesystem::path temporary_;
+  std::ofstream stream_;
+};
+
+}  // namespace moclean
