@@ -1,0 +1,128 @@
+#include "moclean/noise/noise.hpp"
+
+#include <limits>
+
+#include <gmock/gmock.h>
+
+#include "moclean/core/error.hpp"
+
+#include "support/matrix.hpp"
+#include "support/synthetic_walk.hpp"
+
+namespace moclean {
+namespace {
+
+using testing::ThrowsMessage;
+
+void expect_refused(const std::string& specification, const std::string& message) {
+  EXPECT_THAT([&] { parse_noise(specification); }, ThrowsMessage<ArgumentError>(message))
+      << specification;
+}
+
+TEST(ParseNoise, ReadsEveryKeyInAnyOrder) {
+  EXPECT_EQ(parse_noise("gaussian-frames:frames=400,mean=1,sd=1.2"),
+            Noise(GaussianFrames{.frames = 400, .mean = 1, .sd = 1.2}));
+  EXPECT_EQ(parse_noise("gaussian-frames:sd=0.5,mean=-2e1,fraction=0.3"),
+            Noise(GaussianFrames{.fraction = 0.3, .mean = -20, .sd = 0.5}));
+}
+
+TEST(ParseNoise, DefaultsToThePapersMeanAndDeviation) {
+  EXPECT_EQ(parse_noise("gaussian-frames:frames=7"),
+            Noise(GaussianFrames{.frames = 7, .mean = 1, .sd = 1.2}));
+}
+
+TEST(ParseNoise, ReadsBackWhatToStringWrites) {
+  for (const GaussianFrames& noise :
+       {GaussianFrames{.frames = 0}, GaussianFrames{.frames = 400, .mean = -0.1, .sd = 1.0 / 3},
+        GaussianFrames{.fraction = 0.1, .mean = 1e-300, .sd = 1e300}})
+    EXPECT_EQ(parse_noise(to_string(Noise(noise))), Noise(noise)) << to_string(noise);
+
+  EXPECT_EQ(to_string(Noise(GaussianFrames{.frames = 400})),
+            "gaussian-frames:frames=400,mean=1,sd=1.2");
+}
+
+TEST(ParseNoise, NamesWhatIsWrongAndWhatWouldBeRight) {
+  expect_refused("salt:frames=1", "unknown noise 'salt', expected gaussian-frames");
+  expect_refused("", "unknown noise '', expected gaussian-frames");
+  expect_refused("gaussian-frames:frame=4",
+                 "noise gaussian-frames: unknown key 'frame', expected one of frames, fraction, "
+                 "mean, sd");
+  expect_refused("gaussian-frames:frames=4,frames=5",
+                 "noise gaussian-frames: frames is given twice");
+  expect_refused("gaussian-frames:frames=4,fraction=0.1",
+                 "gaussian-frames takes frames= or fraction=, not both");
+  expect_refused("gaussian-frames",
+                 "gaussian-frames needs frames=COUNT or fraction=SHARE, for instance "
+                 "gaussian-frames:frames=400");
+}
+
+TEST(ParseNoise, RefusesPartsThatAreNotKeyAndValue) {
+  expect_refused("gaussian-frames:", "noise gaussian-frames: expected key=value, found ''");
+  expect_refused("gaussian-frames:frames",
+                 "noise gaussian-frames: expected key=value, found "
+                 "'frames'");
+  expect_refused("gaussian-frames:=4", "noise gaussian-frames: expected key=value, found '=4'");
+  expect_refused("gaussian-frames:frames=4,",
+                 "noise gaussian-frames: expected key=value, found ''");
+}
+
+TEST(ParseNoise, RefusesValuesThatAreNotTheNumberExpected) {
+  for (const char* count : {"", "x", "4x", "-1", "1.5", "99999999999999999999"})
+    expect_refused(std::string("gaussian-frames:frames=") + count,
+                   std::string("noise gaussian-frames: frames is '") + count +
+                       "', expected a whole number of at least 0");
+  for (const char* number : {"", "x", "1.2.3", "nan", "inf", "1e999"})
+    expect_refused(
+        std::string("gaussian-frames:frames=1,mean=") + number,
+        std::string("noise gaussian-frames: mean is '") + number + "', expected a number");
+  expect_refused("gaussian-frames:frames=1,sd=-2",
+                 "gaussian-frames: sd is -2, expected at least 0");
+  expect_refused("gaussian-frames:fraction=2", "gaussian-frames: fraction is 2, expected 0 to 1");
+}
+
+TEST(Corrupt, MarksExactlyTheEntriesThatDiffer) {
+  const Clip walk = test::synthetic_walk(120);
+
+  const Corrupted noisy = corrupt(walk, GaussianFrames{.frames = 40}, 1);
+
+  ASSERT_EQ(noisy.touched.rows(), 120);
+  ASSERT_EQ(noisy.touched.cols(), 93);
+  EXPECT_EQ(noisy.touched.rowwise().any().count(), 40);
+  for (Index i = 0; i < walk.samples.size(); ++i)
+    ASSERT_EQ(noisy.touched.data()[i], noisy.clip.samples.data()[i] != walk.samples.data()[i]);
+}
+
+TEST(Corrupt, LeavesNaNAloneAndUntouched) {
+  Clip walk = test::synthetic_walk(10);
+  walk.samples.row(3).setConstant(std::numeric_limits<double>::quiet_NaN());
+
+  const Corrupted noisy = corrupt(walk, GaussianFrames{.frames = 10}, 1);
+
+  EXPECT_TRUE(test::same_bits(noisy.clip.samples.row(3), walk.samples.row(3)));
+  EXPECT_FALSE(noisy.touched.row(3).any());
+  EXPECT_EQ(noisy.touched.rowwise().any().count(), 9);
+}
+
+TEST(Corrupt, KeepsNamesRateAndUnit) {
+  Clip walk = test::synthetic_walk(5);
+  walk.unit = "mm";
+
+  const Clip noisy = corrupt(walk, GaussianFrames{.frames = 1}, 1).clip;
+
+  EXPECT_EQ(noisy.columns, walk.columns);
+  EXPECT_EQ(noisy.frame_rate, 120);
+  EXPECT_EQ(noisy.unit, "mm");
+}
+
+TEST(Corrupt, RepeatsWithTheSeedAndDiffersWithout) {
+  const Clip walk = test::synthetic_walk(50);
+  const GaussianFrames noise{.frames = 10};
+
+  const Matrix first = corrupt(walk, noise, 4).clip.samples;
+
+  EXPECT_TRUE(test::same_bits(first, corrupt(walk, noise, 4).clip.samples));
+  EXPECT_FALSE(test::same_bits(first, corrupt(walk, noise, 5).clip.samples));
+}
+
+}  // namespace
+}  // namespace moclean
