@@ -1,0 +1,39 @@
+#include "moclean/device/buffer.hpp"
+
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace moclean::detail {
+
+cl::Buffer allocate(const Device& device, std::size_t bytes) {
+  return translate_opencl_errors(
+      fmt::format("to allocate {} bytes on {}", bytes, device.info().name),
+      [&] { return cl::Buffer(device.context(), CL_MEM_READ_WRITE, bytes); });
+}
+
+void write(const Device& device, const cl::Buffer& target, const void* source, std::size_t offset,
+           std::size_t bytes) {
+  if (bytes == 0) return;
+  translate_opencl_errors("to copy to " + device.info().name, [&] {
+    device.queue().enqueueWriteBuffer(target, CL_TRUE, offset, bytes, source);
+  });
+}
+
+void read(const Device& device, const cl::Buffer& source, void* target, std::size_t offset,
+          std::size_t bytes) {
+  if (bytes == 0) return;
+  translate_opencl_errors("to copy from " + device.info().name, [&] {
+    device.queue().enqueueReadBuffer(source, CL_TRUE, offset, bytes, target);
+  });
+}
+
+// Plain writes, not enqueueFillBuffer: Oclgrind 21.10 takes filled memory for uninitialised.
+void fill_zero(const Device& device, const cl::Buffer& target, std::size_t bytes) {
+  constexpr std::size_t chunk = std::size_t{1} << 20;
+  const std::vector<char> zeros(std::min(bytes, chunk));
+  for (std::size_t offset = 0; offset < bytes; offset += chunk)
+    write(device, target, zeros.data(), offset, std::min(chunk, bytes - offset));
+}
+
+}  // namespace moclean::detail

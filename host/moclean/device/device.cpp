@@ -1,0 +1,165 @@
+#include "moclean/device/device.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <tuple>
+
+#include <fmt/format.h>
+
+namespace moclean {
+namespace {
+
+DeviceKind kind_of(const cl::Device& device) {
+  const auto type = device.getInfo<CL_DEVICE_TYPE>();
+  if (type & CL_DEVICE_TYPE_GPU) return DeviceKind::gpu;
+  if (type & CL_DEVICE_TYPE_CPU) return DeviceKind::cpu;
+  return DeviceKind::other;
+}
+
+DeviceInfo info_of(const cl::Platform& platform, const cl::Device& device) {
+  DeviceInfo info;
+  info.name = device.getInfo<CL_DEVICE_NAME>();
+  info.platform_name = platform.getInfo<CL_PLATFORM_NAME>();
+  info.driver = device.getInfo<CL_DRIVER_VERSION>();
+  info.version = device.getInfo<CL_DEVICE_VERSION>();
+  info.kind = kind_of(device);
+  info.fp64 = device.getInfo<CL_DEVICE_DOUBLE_FP_CONFIG>() != 0;
+  info.compute_units = static_cast<int>(device.getInfo<CL_DEVICE_MAX_COMPUTE_UNITS>());
+  info.vector_width =
+      std::max(1, static_cast<int>(device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_DOUBLE>()));
+  info.global_memory = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
+  info.max_allocation = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
+  info.local_memory = device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>();
+  info.max_work_group = device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
+  return info;
+}
+
+struct Candidate {
+  DeviceInfo info;
+  cl::Device device;
+};
+
+// The ICD loader reports "no platform" and "no device" as errors; to us both are empty lists.
+std::vector<cl::Platform> platforms() {
+  std::vector<cl::Platform> found;
+  try {
+    cl::Platform::get(&found);
+  } catch (const cl::Error&) {
+    found.clear();
+  }
+  return found;
+}
+
+std::vector<cl::Device> devices_of(const cl::Platform& platform) {
+  std::vector<cl::Device> found;
+  try {
+    platform.getDevices(CL_DEVICE_TYPE_ALL, &found);
+  } catch (const cl::Error&) {
+    found.clear();
+  }
+  return found;
+}
+
+std::vector<Candidate> candidates() {
+  std::vector<Candidate> all;
+  int platform_index = 0;
+  for (const auto& platform : platforms()) {
+    int index = 0;
+    for (const auto& device : devices_of(platform)) {
+      Candidate candidate{info_of(platform, device), device};
+      candidate.info.platform = platform_index;
+      candidate.info.index = index++;
+      all.push_back(std::move(candidate));
+    }
+    ++platform_index;
+  }
+  return all;
+}
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return result;
+}
+
+bool is_index_pair(std::string_view text) {
+  const auto colon = text.find(':');
+  return colon != text.npos && colon > 0 && colon + 1 < text.size() &&
+         text.find_first_not_of("0123456789:") == text.npos;
+}
+
+bool matches(const DeviceInfo& info, const std::string& wanted) {
+  if (wanted.empty()) return true;
+  if (wanted == "cpu") return info.kind == DeviceKind::cpu;
+  if (wanted == "gpu") return info.kind == DeviceKind::gpu;
+  if (is_index_pair(wanted)) return wanted == fmt::format("{}:{}", info.platform, info.index);
+  return lower(info.name).find(wanted) != std::string::npos ||
+         lower(info.platform_name).find(wanted) != std::string::npos;
+}
+
+Candidate choose(std::string_view selection) {
+  const auto all = candidates();
+  const auto better = [](const Candidate& a, const Candidate& b) {
+    const auto score = [](const DeviceInfo& i) {
+      return std::tuple(i.fp64, i.kind == DeviceKind::gpu, i.kind == DeviceKind::cpu);
+    };
+    return score(a.info) > score(b.info);
+  };
+  const Candidate* best = nullptr;
+  for (const auto& candidate : all)
+    if (matches(candidate.info, lower(selection)) && (!best || better(candidate, *best)))
+      best = &candidate;
+  if (best) return *best;
+
+  if (all.empty())
+    throw DeviceError("no OpenCL device found; install a driver, for a CPU pocl-opencl-icd");
+  std::string found;
+  for (const auto& candidate : all) found += (found.empty() ? "" : ", ") + describe(candidate.info);
+  throw DeviceError(fmt::format("no OpenCL device matches '{}' (found: {})", selection, found));
+}
+
+}  // namespace
+
+std::string to_string(DeviceKind kind) {
+  switch (kind) {
+    case DeviceKind::cpu:
+      return "cpu";
+    case DeviceKind::gpu:
+      return "gpu";
+    case DeviceKind::other:
+      break;
+  }
+  return "other";
+}
+
+std::vector<DeviceInfo> list_devices() {
+  return translate_opencl_errors("to list the devices", [] {
+    std::vector<DeviceInfo> infos;
+    for (auto& candidate : candidates()) infos.push_back(std::move(candidate.info));
+    return infos;
+  });
+}
+
+std::string describe(const DeviceInfo& info) {
+  return fmt::format("{}:{} {} ({}, {} units, {:.1f} GiB, {})", info.platform, info.index,
+                     info.name, to_string(info.kind), info.compute_units,
+                     static_cast<double>(info.global_memory) / (1ull << 30),
+                     info.fp64 ? "fp64" : "no fp64");
+}
+
+Device::Device(std::string_view selection) {
+  translate_opencl_errors("to open the device", [&] {
+    Candidate chosen = choose(selection);
+    info_ = std::move(chosen.info);
+    device_ = chosen.device;
+    context_ = cl::Context(device_);
+    queue_ = cl::CommandQueue(context_, device_);
+  });
+}
+
+void Device::finish() const {
+  translate_opencl_errors("on " + info_.name, [&] { queue_.finish(); });
+}
+
+}  // namespace moclean

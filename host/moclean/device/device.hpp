@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "moclean/device/opencl.hpp"
+
+namespace moclean {
+
+enum class DeviceKind { cpu, gpu, other };
+
+std::string to_string(DeviceKind kind);
+
+/// What a device says about itself.
+struct DeviceInfo {
+  int platform = 0;  ///< index of its platform
+  int index = 0;     ///< index among the devices of that platform
+  std::string name;
+  std::string platform_name;
+  std::string driver;
+  std::string version;
+  DeviceKind kind = DeviceKind::other;
+  bool fp64 = false;  ///< cl_khr_fp64
+  int compute_units = 0;
+  int vector_width = 1;              ///< native vector width in doubles, 1 where fp64 is missing
+  std::uint64_t global_memory = 0;   ///< bytes
+  std::uint64_t max_allocation = 0;  ///< bytes of one buffer
+  std::uint64_t local_memory = 0;    ///< bytes per work-group
+  std::size_t max_work_group = 0;    ///< work-items
+};
+
+/// Every device of every platform; empty if there is none.
+std::vector<DeviceInfo> list_devices();
+
+/// One line for people: `0:0 pthread-skylake (cpu, 2 units, 3.4 GiB, fp64)`.
+std::string describe(const DeviceInfo& info);
+
+/// An OpenCL device with a context and an in-order queue of its own. Not copyable; buffers, kernels
+/// and programs keep what they need of it alive.
+class Device {
+ public:
+  /// Opens the device that `selection` names: empty (best: fp64 before none, GPU before CPU),
+  /// `cpu`, `gpu`, `P:D` (platform and device index), or a fragment of its or its platform's name
+  /// in any case. Throws DeviceError listing what there is if none matches; there is no fall-back.
+  explicit Device(std::string_view selection = {});
+
+  Device(const Device&) = delete;
+  Device& operator=(const Device&) = delete;
+
+  const DeviceInfo& info() const { return info_; }
+  const cl::Context& context() const { return context_; }
+  const cl::CommandQueue& queue() const { return queue_; }
+  const cl::Device& handle() const { return device_; }
+
+  /// Waits until everything enqueued is done.
+  void finish() const;
+
+ private:
+  DeviceInfo info_;
+  cl::Device device_;
+  cl::Context context_;
+  cl::CommandQueue queue_;
+};
+
+}  // namespace moclean

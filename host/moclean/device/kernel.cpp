@@ -1,0 +1,52 @@
+#include "moclean/device/kernel.hpp"
+
+#include <fmt/format.h>
+
+#include "moclean/device/kernel_source.hpp"
+
+namespace moclean {
+namespace {
+
+std::string options_of(const Defines& defines) {
+  std::string options = "-cl-std=CL1.2";
+  for (const auto& [name, value] : defines) options += fmt::format(" -D{}={}", name, value);
+  return options;
+}
+
+std::size_t whole_groups(std::size_t items, std::size_t group) {
+  return (items + group - 1) / group * group;
+}
+
+}  // namespace
+
+Program::Program(const Device& device, std::string_view source, const Defines& defines)
+    : device_(&device) {
+  const std::string options = options_of(defines);
+  const std::string text = std::string(kernel_source::prelude) + std::string(source);
+  translate_opencl_errors("to load a program on " + device.info().name,
+                          [&] { program_ = cl::Program(device.context(), text); });
+  try {
+    program_.build({device.handle()}, options.c_str());
+  } catch (const cl::Error& error) {
+    const auto log = program_.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.handle());
+    throw DeviceError(fmt::format("OpenCL compiler of {} failed ({}) with options {}:\n{}",
+                                  device.info().name, opencl_status(error.err()), options, log));
+  }
+}
+
+Kernel::Kernel(const Program& program, const std::string& name)
+    : device_(&program.device()), name_(name) {
+  translate_opencl_errors("to find kernel " + name,
+                          [&] { kernel_ = cl::Kernel(program.handle(), name.c_str()); });
+}
+
+void Kernel::launch(const Grid& grid) const {
+  if (grid.x == 0 || grid.y == 0 || grid.z == 0) return;
+  translate_opencl_errors("to run kernel " + name_ + " on " + device_->info().name, [&] {
+    device_->queue().enqueueNDRangeKernel(
+        kernel_, cl::NullRange, cl::NDRange(whole_groups(grid.x, grid.group_x), grid.y, grid.z),
+        cl::NDRange(grid.group_x, 1, 1));
+  });
+}
+
+}  // namespace moclean

@@ -1,0 +1,151 @@
+#include <map>
+#include <tuple>
+#include <vector>
+
+#include <clblast.h>
+#include <fmt/format.h>
+
+#include "moclean/device/kernel_source.hpp"
+#include "moclean/linalg/products.hpp"
+
+namespace moclean {
+namespace {
+
+using clblast::Transpose;
+
+/// Offsets of the operands of equally shaped products: one batched call.
+struct Offsets {
+  std::vector<std::size_t> left, right, result;
+};
+
+/// Rows, then order: segments that agree in both share a call.
+using Shape = std::pair<int, int>;
+
+template <class OffsetsOf>
+std::map<Shape, Offsets> group_by_shape(const Batch& batch, OffsetsOf&& offsets_of) {
+  std::map<Shape, Offsets> groups;
+  for (const std::int32_t b : batch.active()) {
+    const SegmentRecord& segment = batch.segment(b);
+    const auto [left, right, result] = offsets_of(segment);
+    Offsets& group = groups[{segment.rows, segment.order}];
+    group.left.push_back(left);
+    group.right.push_back(right);
+    group.result.push_back(result);
+  }
+  return groups;
+}
+
+/// Sizes of C [m x n] = op(A) [m x k] op(B) [k x n] and the pitches of the three.
+struct Sizes {
+  std::size_t m, n, k, left_pitch, right_pitch, result_pitch;
+};
+
+void gemm(const Device& device, Transpose left_form, Transpose right_form, const Sizes& sizes,
+          const Offsets& offsets, const Buffer<double>& left, const Buffer<double>& right,
+          Buffer<double>& result) {
+  const std::size_t count = offsets.left.size();
+  const std::vector<double> one(count, 1), zero(count, 0);
+  cl_command_queue queue = device.queue()();
+  const auto status = clblast::GemmBatched<double>(
+      clblast::Layout::kRowMajor, left_form, right_form, sizes.m, sizes.n, sizes.k, one.data(),
+      left.memory()(), offsets.left.data(), sizes.left_pitch, right.memory()(),
+      offsets.right.data(), sizes.right_pitch, zero.data(), result.memory()(),
+      offsets.result.data(), sizes.result_pitch, count, &queue, nullptr);
+  if (status != clblast::StatusCode::kSuccess)
+    throw DeviceError(fmt::format("CLBlast failed in a batched product {} x {} x {} on {}: {}",
+                                  sizes.m, sizes.n, sizes.k, device.info().name,
+                                  opencl_status(static_cast<cl_int>(status))));
+}
+
+std::size_t stacked_offset(const SegmentRecord& segment) {
+  return static_cast<std::size_t>(segment.first_row * segment.pitch);
+}
+
+std::size_t square_offset(const SegmentRecord& segment) {
+  return static_cast<std::size_t>(segment.square);
+}
+
+// XM, or X op(M) with the given form, for a tall segment; always MX for a wide one.
+void multiply(const Device& device, const Batch& batch, const Buffer<double>& x,
+              const Buffer<double>& m, Transpose tall_form, Buffer<double>& result) {
+  const auto groups = group_by_shape(batch, [](const SegmentRecord& s) {
+    return s.wide() ? std::tuple(square_offset(s), stacked_offset(s), stacked_offset(s))
+                    : std::tuple(stacked_offset(s), square_offset(s), stacked_offset(s));
+  });
+  const auto pitch = static_cast<std::size_t>(batch.segment(0).pitch);
+  const auto columns = static_cast<std::size_t>(batch.segment(0).columns);
+  for (const auto& [shape, offsets] : groups) {
+    const auto rows = static_cast<std::size_t>(shape.first);
+    const auto order = static_cast<std::size_t>(shape.second);
+    const auto order_pitch = static_cast<std::size_t>(padded(shape.second));
+    const bool wide = rows < columns;
+    const Sizes sizes{rows, columns, order, wide ? order_pitch : pitch, pitch, pitch};
+    if (wide)
+      gemm(device, Transpose::kNo, Transpose::kNo, sizes, offsets, m, x, result);
+    else
+      gemm(device, Transpose::kNo, tall_form, sizes, offsets, x, m, result);
+  }
+}
+
+// C = op(P) Z of the square matrices.
+void square_product(const Device& device, const Batch& batch, Transpose form,
+                    const Buffer<double>& p, const Buffer<double>& z, Buffer<double>& c) {
+  const auto groups = group_by_shape(batch, [](const SegmentRecord& s) {
+    return std::tuple(square_offset(s), square_offset(s), square_offset(s));
+  });
+  for (const auto& [shape, offsets] : groups) {
+    const auto order = static_cast<std::size_t>(shape.second);
+    const auto pitch = static_cast<std::size_t>(padded(shape.second));
+    gemm(device, form, Transpose::kNo, {order, order, order, pitch, pitch, pitch}, offsets, p, z,
+         c);
+  }
+}
+
+}  // namespace
+
+ClblastProducts::ClblastProducts(const Device& device)
+    : device_(&device),
+      program_(device, kernel_source::scale_rows, common_defines(device)),
+      scale_rows_(program_, "scale_rows") {}
+
+void ClblastProducts::gram(const Batch& batch, const Buffer<double>& x, Buffer<double>& g) {
+  const auto groups = group_by_shape(batch, [](const SegmentRecord& s) {
+    return std::tuple(stacked_offset(s), stacked_offset(s), square_offset(s));
+  });
+  const auto pitch = static_cast<std::size_t>(batch.segment(0).pitch);
+  const int columns = batch.segment(0).columns;
+  for (const auto& [shape, offsets] : groups) {
+    const bool wide = shape.first < columns;
+    const auto order = static_cast<std::size_t>(shape.second);
+    const auto depth = static_cast<std::size_t>(wide ? columns : shape.first);
+    gemm(*device_, wide ? Transpose::kNo : Transpose::kYes, wide ? Transpose::kYes : Transpose::kNo,
+         {order, order, depth, pitch, pitch, static_cast<std::size_t>(padded(shape.second))},
+         offsets, x, x, g);
+  }
+}
+
+void ClblastProducts::reconstruct(const Batch& batch, const Buffer<double>& z,
+                                  const Buffer<double>& f, Buffer<double>& w) {
+  if (scaled_.size() < batch.square_size()) scaled_ = Buffer<double>(*device_, batch.square_size());
+  const Grid rows{.x = static_cast<std::size_t>(batch.largest_order_pitch()),
+                  .y = static_cast<std::size_t>(batch.active_count())};
+  scale_rows_(rows, batch.device_segments(), batch.device_active(), z, f, scaled_);
+  square_product(*device_, batch, Transpose::kYes, scaled_, z, w);
+}
+
+void ClblastProducts::apply(const Batch& batch, const Buffer<double>& x, const Buffer<double>& w,
+                            Buffer<double>& a) {
+  multiply(*device_, batch, x, w, Transpose::kNo, a);
+}
+
+void ClblastProducts::rotate(const Batch& batch, const Buffer<double>& x, const Buffer<double>& z,
+                             Buffer<double>& b) {
+  multiply(*device_, batch, x, z, Transpose::kYes, b);
+}
+
+void ClblastProducts::compose(const Batch& batch, const Buffer<double>& p, const Buffer<double>& z,
+                              Buffer<double>& c) {
+  square_product(*device_, batch, Transpose::kNo, p, z, c);
+}
+
+}  // namespace moclean

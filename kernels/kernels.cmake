@@ -1,0 +1,16 @@
+# moclean_embed_kernels(TARGET STEM...): every kernels/STEM.cl becomes one generated .cpp of TARGET that
+# defines moclean::kernel_source::STEM (declared in host/moclean/device/kernel_source.hpp).
+function(moclean_embed_kernels target)
+  foreach(kernel ${ARGN})
+    set(source ${PROJECT_SOURCE_DIR}/kernels/${kernel}.cl)
+    set(generated ${CMAKE_CURRENT_BINARY_DIR}/kernels/${kernel}.cl.cpp)
+    add_custom_command(
+      OUTPUT ${generated}
+      COMMAND ${CMAKE_COMMAND} -D NAME=${kernel} -D SOURCE=${source} -D OUTPUT=${generated}
+              -P ${PROJECT_SOURCE_DIR}/kernels/embed.cmake
+      DEPENDS ${source} ${PROJECT_SOURCE_DIR}/kernels/embed.cmake
+      COMMENT "Embedding ${kernel}.cl"
+      VERBATIM)
+    target_sources(${target} PRIVATE ${generated})
+  endforeach()
+endfunction()
