@@ -1,0 +1,55 @@
+#include "moclean/denoise/agreement.hpp"
+
+#include <fmt/format.h>
+
+#include "moclean/core/error.hpp"
+
+namespace moclean {
+namespace {
+
+double relative(const Matrix& tested, const Matrix& reference, double data_norm) {
+  const double difference = (tested - reference).norm();
+  if (difference == 0) return 0;
+  const double norm = reference.norm();
+  return difference / (norm > 0 ? norm : data_norm);
+}
+
+void require_same_shape(const Denoised& tested, const Denoised& reference) {
+  const Matrix& a = tested.clip.samples;
+  const Matrix& b = reference.clip.samples;
+  if (a.rows() != b.rows() || a.cols() != b.cols())
+    throw ShapeError(
+        fmt::format("cannot compare results of {} frames x {} columns and {} frames x {} columns",
+                    a.rows(), a.cols(), b.rows(), b.cols()));
+  if (tested.segments.size() != reference.segments.size())
+    throw ShapeError(fmt::format("cannot compare results of {} and {} segments",
+                                 tested.segments.size(), reference.segments.size()));
+}
+
+}  // namespace
+
+Agreement agreement(const Denoised& tested, const Denoised& reference) {
+  require_same_shape(tested, reference);
+  const Matrix& a_ref = reference.clip.samples;
+  const Matrix& e_ref = reference.outliers.samples;
+  const double data_norm = (a_ref + e_ref).norm();
+
+  Agreement result;
+  result.low_rank = relative(tested.clip.samples, a_ref, data_norm);
+  result.sparse = relative(tested.outliers.samples, e_ref, data_norm);
+  for (std::size_t s = 0; s < tested.segments.size(); ++s) {
+    const SegmentOutcome& own = tested.segments[s].outcome;
+    const SegmentOutcome& expected = reference.segments[s].outcome;
+    result.same_iterations &= own.iterations == expected.iterations;
+    result.same_rank &= own.rank == expected.rank;
+  }
+  return result;
+}
+
+bool within(const Agreement& agreement) {
+  return agreement.low_rank <= low_rank_agreement_bound &&
+         agreement.sparse <= sparse_agreement_bound && agreement.same_iterations &&
+         agreement.same_rank;
+}
+
+}  // namespace moclean

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "moclean/motion/clip.hpp"
+#include "moclean/solve/backend.hpp"
+
+namespace moclean {
+
+/// One segment of a cleaned take.
+struct DenoisedSegment {
+  Index first_frame = 0;
+  Index frames = 0;
+  SegmentOutcome outcome;
+};
+
+/// A cleaned take.
+struct Denoised {
+  Clip clip;      ///< the motion
+  Clip outliers;  ///< what was taken away as gross error, same shape; zero where nothing was
+  std::vector<DenoisedSegment> segments;
+  double solve_seconds =
+      0;  ///< wall time; takes solved together share it by their number of frames
+};
+
+/// Turns clips into clips.
+class Denoiser {
+ public:
+  virtual ~Denoiser() = default;
+
+  /// Cleans all takes at once; the result of a take does not depend on the others, bit for bit.
+  /// Throws ShapeError naming the take's index, frame and column if a sample is NaN or infinite.
+  virtual std::vector<Denoised> denoise(std::span<const Clip> takes,
+                                        const Monitor& monitor = {}) = 0;
+};
+
+}  // namespace moclean

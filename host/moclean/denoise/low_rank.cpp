@@ -1,0 +1,123 @@
+#include "moclean/denoise/low_rank.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "moclean/core/error.hpp"
+
+namespace moclean {
+namespace {
+
+// Takes of equal width, whose segments share one batch.
+struct Group {
+  std::vector<std::size_t> takes;
+  SegmentBatch data;
+};
+
+void require_usable(const Clip& take, std::size_t index) {
+  if (take.samples.size() == 0)
+    throw ShapeError(fmt::format("take {} is empty ({} frames x {} columns)", index, take.frames(),
+                                 take.samples.cols()));
+  if (static_cast<Index>(take.columns.size()) != take.samples.cols())
+    throw ShapeError(fmt::format("take {} names {} columns but has {}", index, take.columns.size(),
+                                 take.samples.cols()));
+  for (Index f = 0; f < take.frames(); ++f)
+    for (Index c = 0; c < take.samples.cols(); ++c)
+      if (!std::isfinite(take.samples(f, c)))
+        throw ShapeError(
+            fmt::format("take {}: not finite at frame {}, column {} "
+                        "(missing samples are not supported by this method)",
+                        index, f, take.columns[static_cast<std::size_t>(c)]));
+}
+
+Group stack(std::span<const Clip> takes, std::vector<std::size_t> members,
+            std::span<const SegmentPlan> plans) {
+  std::vector<Index> first_row = {0};
+  for (const std::size_t t : members) {
+    const Index offset = first_row.back();
+    for (std::size_t s = 1; s < plans[t].size(); ++s) first_row.push_back(offset + plans[t][s]);
+  }
+  SegmentBatch data(takes[members.front()].samples.cols(), std::move(first_row));
+  Index row = 0;
+  for (const std::size_t t : members) {
+    data.block(row, takes[t].frames()) = takes[t].samples;
+    row += takes[t].frames();
+  }
+  return {std::move(members), std::move(data)};
+}
+
+// Takes of equal width together, in increasing width.
+std::vector<Group> group_by_width(std::span<const Clip> takes, std::span<const SegmentPlan> plans) {
+  std::map<Index, std::vector<std::size_t>> by_width;
+  for (std::size_t t = 0; t < takes.size(); ++t) by_width[takes[t].samples.cols()].push_back(t);
+  std::vector<Group> groups;
+  for (auto& [width, members] : by_width) groups.push_back(stack(takes, std::move(members), plans));
+  return groups;
+}
+
+// The rows of one take out of a batch, named like the take.
+Clip unstack(const SegmentBatch& batch, Index first_row, const Clip& take) {
+  return {.samples = batch.block(first_row, take.frames()),
+          .columns = take.columns,
+          .frame_rate = take.frame_rate,
+          .unit = take.unit};
+}
+
+void scatter(const Group& group, const Solution& solution, double seconds,
+             std::span<const Clip> takes, std::span<const SegmentPlan> plans,
+             std::vector<Denoised>& results) {
+  Index row = 0;
+  auto outcome = solution.segments.begin();
+  for (const std::size_t t : group.takes) {
+    Denoised& result = results[t];
+    result.clip = unstack(solution.low_rank, row, takes[t]);
+    result.outliers = unstack(solution.sparse, row, takes[t]);
+    for (std::size_t s = 0; s + 1 < plans[t].size(); ++s)
+      result.segments.push_back({plans[t][s], plans[t][s + 1] - plans[t][s], *outcome++});
+    result.solve_seconds =
+        seconds * static_cast<double>(takes[t].frames()) / static_cast<double>(group.data.rows());
+    row += takes[t].frames();
+  }
+}
+
+}  // namespace
+
+SegmentPlan plan(const Segmentation& segmentation, Index frames) {
+  if (segmentation.whole) return equal_segments(frames, 1);
+  if (segmentation.segments != 0) return equal_segments(frames, segmentation.segments);
+  return segments_of_length(frames, segmentation.length);
+}
+
+std::vector<Denoised> LowRankDenoiser::denoise(std::span<const Clip> takes,
+                                               const Monitor& monitor) {
+  std::vector<SegmentPlan> plans;
+  for (std::size_t t = 0; t < takes.size(); ++t) {
+    require_usable(takes[t], t);
+    plans.push_back(plan(segmentation_, takes[t].frames()));
+  }
+  const std::vector<Group> groups = group_by_width(takes, plans);
+  Progress all;
+  for (const Group& group : groups) all.total += group.data.segments();
+
+  std::vector<Denoised> results(takes.size());
+  for (const Group& group : groups) {
+    Monitor part{.stop = monitor.stop};
+    if (monitor.report)
+      part.report = [&](const Progress& own) {
+        monitor.report({.finished = all.finished + own.finished, .total = all.total});
+      };
+    using Clock = std::chrono::steady_clock;
+    const Clock::time_point begin = Clock::now();
+    const Solution solution = backend_.solve(group.data, method_, part);
+    const std::chrono::duration<double> seconds = Clock::now() - begin;
+    scatter(group, solution, seconds.count(), takes, plans, results);
+    all.finished += group.data.segments();
+  }
+  return results;
+}
+
+}  // namespace moclean

@@ -1,0 +1,36 @@
+#pragma once
+
+#include "moclean/denoise/denoiser.hpp"
+#include "moclean/segment/plan.hpp"
+
+namespace moclean {
+
+/// How a take is cut. Exactly one of the three is meant: whole, a number of segments, or a length.
+struct Segmentation {
+  bool whole = false;  ///< one segment (rpca)
+  Index segments = 0;  ///< > 0: so many equal segments
+  Index length = 200;  ///< otherwise: equal segments of about so many frames
+
+  bool operator==(const Segmentation&) const = default;
+};
+
+/// The plan for a take of `frames` frames.
+SegmentPlan plan(const Segmentation& segmentation, Index frames);
+
+/// Segmented low-rank approximation (Peng et al.): cut, split every segment by robust PCA, stitch.
+/// With Segmentation{.whole = true} it is plain RPCA of the take.
+class LowRankDenoiser final : public Denoiser {
+ public:
+  /// `backend` is used by denoise() and has to outlive this object.
+  LowRankDenoiser(Segmentation segmentation, Method method, Backend& backend)
+      : segmentation_(segmentation), method_(std::move(method)), backend_(backend) {}
+
+  std::vector<Denoised> denoise(std::span<const Clip> takes, const Monitor& monitor = {}) override;
+
+ private:
+  Segmentation segmentation_;
+  Method method_;
+  Backend& backend_;
+};
+
+}  // namespace moclean
