@@ -1,0 +1,173 @@
+#include "cli/denoise_options.hpp"
+
+#include <algorithm>
+#include <thread>
+
+#include "moclean/core/error.hpp"
+
+namespace moclean::cli {
+namespace {
+
+constexpr const char* files_group = "Files";
+constexpr const char* method_group = "Method";
+constexpr const char* device_group = "Where it is computed";
+constexpr const char* report_group = "Report";
+
+void add_files(CLI::App& command, DenoiseOptions& options) {
+  command
+      .add_option("INPUT", options.inputs, "Recordings (.bvh .amc .csv .npy), or folders of them")
+      ->required()
+      ->type_name("");
+  command
+      .add_option("-o,--output", options.output,
+                  "File (.csv .npy) for one input; folder, created if missing, for several")
+      ->required()
+      ->type_name("OUTPUT")
+      ->group(files_group);
+  command
+      .add_option("--outliers", options.outliers,
+                  "Also write what was taken away; a folder when OUTPUT is one")
+      ->type_name("FILE")
+      ->group(files_group);
+  command
+      .add_option(
+          "--format", options.format,
+          "Format of results in a folder; otherwise that of the input if possible, else npy")
+      ->check(CLI::IsMember({"csv", "npy"}))
+      ->type_name("FORMAT")
+      ->group(files_group);
+  add_input_options(command, options.reading);
+  for (const char* name : {"--frames", "--rate", "--skeleton"})
+    command.get_option(name)->group(files_group);
+}
+
+void add_segmentation(CLI::App& command, DenoiseOptions& options) {
+  command
+      .add_option("--method", options.method_name,
+                  "slra cuts a take into segments, rpca takes it whole")
+      ->check(CLI::IsMember({"slra", "rpca"}))
+      ->capture_default_str()
+      ->type_name("METHOD")
+      ->group(method_group);
+  auto* length = command
+                     .add_option("--segment-length", options.segment_length,
+                                 "Equal segments of about so many frames (slra)")
+                     ->check(CLI::PositiveNumber)
+                     ->default_str("200")
+                     ->type_name("N")
+                     ->group(method_group);
+  command.add_option("--segments", options.segments, "So many equal segments (slra)")
+      ->check(CLI::PositiveNumber)
+      ->excludes(length)
+      ->type_name("K")
+      ->group(method_group);
+}
+
+void add_method(CLI::App& command, DenoiseOptions& options) {
+  RobustPca& method = options.method;
+  auto* lambda =
+      command
+          .add_option("--lambda", method.lambda,
+                      "Weight of the outliers; default SCALE / sqrt(max(frames, columns))")
+          ->check(CLI::PositiveNumber)
+          ->type_name("X");
+  auto* scale = command.add_option("--lambda-scale", method.lambda_scale, "SCALE of that default")
+                    ->excludes(lambda)
+                    ->capture_default_str()
+                    ->type_name("SCALE");
+  auto* rho = command.add_option("--rho", method.rho, "Growth of mu per iteration, above 1")
+                  ->capture_default_str()
+                  ->type_name("X");
+  auto* tolerance =
+      command.add_option("--tolerance", method.tolerance, "Relative residual to stop at")
+          ->capture_default_str()
+          ->type_name("X");
+  auto* iterations =
+      command.add_option("--max-iterations", method.max_iterations, "Iterations to stop at")
+          ->capture_default_str()
+          ->type_name("N");
+  auto* order =
+      command
+          .add_option_function<std::string>(
+              "--order", [&](const std::string& text) { method.order = parse_update_order(text); },
+              "Update the motion first (ae, the paper) or the outliers first (ea)")
+          ->check(CLI::IsMember({"ae", "ea"}))
+          ->default_str("ae")
+          ->type_name("ORDER");
+  for (CLI::Option* option : {lambda, scale, rho, tolerance, iterations, order})
+    option->group(method_group);
+}
+
+void add_device(CLI::App& command, DenoiseOptions& options) {
+  command.add_option("--backend", options.backend, "OpenCL device, or the plain reference (Eigen)")
+      ->check(CLI::IsMember({"opencl", "reference"}))
+      ->capture_default_str()
+      ->type_name("BACKEND")
+      ->group(device_group);
+  command
+      .add_option("--device", options.device,
+                  "OpenCL device: cpu, gpu, P:D (see moclean devices), or part of its name; "
+                  "otherwise the best one")
+      ->envname("MOCLEAN_DEVICE")
+      ->type_name("SEL")
+      ->group(device_group);
+  command
+      .add_option_function<std::string>(
+          "--products",
+          [&](const std::string& text) { options.products = parse_product_path(text); },
+          "Matrix products on the OpenCL device: our kernels, or CLBlast")
+      ->check(CLI::IsMember({"own", "clblast"}))
+      ->default_str("own")
+      ->type_name("PATH")
+      ->group(device_group);
+  options.jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  command
+      .add_option("--jobs", options.jobs,
+                  "Threads for reading files and for the reference; default: all of the machine")
+      ->check(CLI::PositiveNumber)
+      ->type_name("N")
+      ->group(device_group);
+}
+
+void add_report(CLI::App& command, DenoiseOptions& options) {
+  command.add_option("--json", options.json, "Write a record of the run; - is standard output")
+      ->type_name("FILE")
+      ->group(report_group);
+  command
+      .add_flag("--verify", options.verify,
+                "Solve with the reference, too; write nothing and exit 1 if they differ")
+      ->group(report_group);
+  command.add_flag("--quiet", options.quiet, "Print nothing but warnings and errors")
+      ->group(report_group);
+}
+
+Segmentation segmentation_of(const DenoiseOptions& options) {
+  Segmentation segmentation;
+  segmentation.whole = options.method_name == "rpca";
+  if (segmentation.whole && (options.segment_length || options.segments))
+    throw ArgumentError(
+        "rpca takes every recording whole; --segment-length and --segments belong to --method "
+        "slra");
+  if (options.segment_length) segmentation.length = *options.segment_length;
+  if (options.segments) segmentation.segments = *options.segments;
+  return segmentation;
+}
+
+}  // namespace
+
+void add_denoise_options(CLI::App& command, DenoiseOptions& options) {
+  add_files(command, options);
+  add_segmentation(command, options);
+  add_method(command, options);
+  add_device(command, options);
+  add_report(command, options);
+}
+
+void complete(DenoiseOptions& options) {
+  options.segmentation = segmentation_of(options);
+  if (options.verify && options.backend == "reference")
+    throw ArgumentError("--verify compares with the reference and needs --backend opencl");
+  check(options.method);
+}
+
+}  // namespace moclean::cli

@@ -1,0 +1,150 @@
+#include "cli/inputs.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <future>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "moclean/core/error.hpp"
+#include "moclean/io/extension.hpp"
+#include "moclean/io/read_write.hpp"
+#include "moclean/solve/backend.hpp"
+
+namespace moclean::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::optional<Index> parse_frame(std::string_view text, const std::string& whole) {
+  if (text.empty()) return std::nullopt;
+  Index frame = 0;
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), frame);
+  if (error != std::errc{} || stop != text.data() + text.size() || frame < 0)
+    throw ArgumentError(fmt::format(
+        "--frames is '{}', expected A:B with whole numbers from 0, for instance 0:2800", whole));
+  return frame;
+}
+
+bool is_recording(const fs::path& file) {
+  constexpr std::array known = {".bvh", ".amc", ".csv", ".npy"};
+  return std::ranges::find(known, extension(file)) != known.end();
+}
+
+std::vector<fs::path> recordings_in(const fs::path& folder) {
+  std::vector<fs::path> found;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
+    if (entry.is_regular_file() && is_recording(entry.path())) found.push_back(entry.path());
+  if (found.empty()) throw FileError(folder, "holds no recording (.bvh, .amc, .csv or .npy)");
+  std::ranges::sort(found);
+  return found;
+}
+
+// The solvers refuse such samples, too, but know neither the file nor the frame in it.
+void require_solvable(const Clip& clip, const FrameRange& frames, const fs::path& file) {
+  if (clip.samples.size() == 0) throw FileError(file, "holds no samples");
+  for (Index f = 0; f < clip.frames(); ++f)
+    for (Index c = 0; c < clip.samples.cols(); ++c) {
+      const double sample = clip.samples(f, c);
+      if (std::abs(sample) <= largest_entry) continue;
+      throw FileError(
+          file, fmt::format("frame {}, column {} is {}; {}", frames.first.value_or(0) + f,
+                            clip.columns[static_cast<std::size_t>(c)], sample,
+                            std::isnan(sample) ? "missing samples are not supported by this method"
+                                               : "expected a number of sensible size"));
+    }
+}
+
+}  // namespace
+
+FrameRange parse_frame_range(const std::string& text) {
+  const std::string_view view = text;
+  const std::size_t colon = view.find(':');
+  if (colon == view.npos)
+    throw ArgumentError(fmt::format("--frames is '{}', expected A:B, for instance 0:2800", text));
+  const FrameRange range{parse_frame(view.substr(0, colon), text),
+                         parse_frame(view.substr(colon + 1), text)};
+  if (range.last && range.first.value_or(0) >= *range.last)
+    throw ArgumentError(fmt::format("--frames {} holds no frame: A:B means A up to B - 1", text));
+  return range;
+}
+
+void add_input_options(CLI::App& command, InputOptions& options) {
+  command
+      .add_option_function<std::string>(
+          "--frames", [&](const std::string& text) { options.frames = parse_frame_range(text); },
+          "Use frames A up to B - 1 only, counted from 0; A or B may be left out")
+      ->type_name("A:B");
+  command.add_option("--rate", options.rate, "Frame rate of files that state none")
+      ->type_name("HZ")
+      ->check(CLI::PositiveNumber);
+  command
+      .add_option("--skeleton", options.skeleton,
+                  "Skeleton of .amc files; otherwise the .asf beside them that fits their name")
+      ->type_name("FILE.asf");
+}
+
+Clip select_frames(const Clip& clip, const FrameRange& frames, const fs::path& file) {
+  const Index first = frames.first.value_or(0);
+  const Index last = frames.last.value_or(clip.frames());
+  if (first >= last || last > clip.frames())
+    throw ArgumentError(fmt::format("--frames {}:{} is out of range: {} has {} frames", first,
+                                    frames.last ? std::to_string(last) : "", file.string(),
+                                    clip.frames()));
+  return cut(clip, first, last);
+}
+
+Clip read_input(const fs::path& file, const InputOptions& options) {
+  Clip clip = read_clip(file, {.skeleton = options.skeleton, .rate = options.rate});
+  if (!options.frames.first && !options.frames.last) return clip;
+  return select_frames(clip, options.frames, file);
+}
+
+std::vector<fs::path> expand_folders(const std::vector<fs::path>& inputs) {
+  std::vector<fs::path> files;
+  for (const fs::path& input : inputs) {
+    if (!fs::exists(input)) throw FileError(input, "there is no such file or folder");
+    if (!fs::is_directory(input)) {
+      files.push_back(input);
+      continue;
+    }
+    for (fs::path& file : recordings_in(input)) files.push_back(std::move(file));
+  }
+  return files;
+}
+
+Takes read_takes(const std::vector<fs::path>& files, const InputOptions& options, int jobs,
+                 std::stop_token stop) {
+  Takes takes{std::vector<Clip>(files.size()), std::vector<double>(files.size())};
+  const auto read = [&](std::size_t i) {
+    if (stop.stop_requested()) throw Cancelled();
+    const auto begin = std::chrono::steady_clock::now();
+    takes.clips[i] = read_input(files[i], options);
+    require_solvable(takes.clips[i], options.frames, files[i]);
+    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
+    takes.read_seconds[i] = seconds.count();
+  };
+
+  std::vector<std::packaged_task<void()>> tasks;
+  for (std::size_t i = 0; i < files.size(); ++i) tasks.emplace_back([&read, i] { read(i); });
+  std::atomic<std::size_t> next = 0;
+  {
+    const auto work = [&] {
+      for (std::size_t i = next++; i < tasks.size(); i = next++) tasks[i]();
+    };
+    std::vector<std::jthread> others;
+    for (std::size_t t = 1; t < std::min<std::size_t>(static_cast<std::size_t>(jobs), tasks.size());
+         ++t)
+      others.emplace_back(work);
+    work();
+  }
+  for (auto& task : tasks) task.get_future().get();  // rethrows what reading a file threw
+  return takes;
+}
+
+}  // namespace moclean::cli

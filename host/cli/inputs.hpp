@@ -1,0 +1,56 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "moclean/motion/clip.hpp"
+
+namespace moclean::cli {
+
+/// Frames A up to but not including B, counted from 0; either end may be left open.
+struct FrameRange {
+  std::optional<Index> first;
+  std::optional<Index> last;
+};
+
+/// Reads `A:B`, `A:`, `:B` or `:`. Throws ArgumentError for anything else, and if A >= B.
+FrameRange parse_frame_range(const std::string& text);
+
+/// How recordings are read; the options --frames, --rate and --skeleton of every command.
+struct InputOptions {
+  FrameRange frames;
+  double rate = 0;  ///< Hz; 0 where not given
+  std::filesystem::path skeleton;
+};
+
+void add_input_options(CLI::App& command, InputOptions& options);
+
+/// The frames of a clip that were asked for. Throws ArgumentError naming `file` if the clip has
+/// fewer.
+Clip select_frames(const Clip& clip, const FrameRange& frames, const std::filesystem::path& file);
+
+/// Reads one recording and selects its frames.
+Clip read_input(const std::filesystem::path& file, const InputOptions& options);
+
+/// Replaces every folder among `inputs` by the recordings in it (.bvh .amc .csv .npy, not those of
+/// sub-folders), sorted by name. Throws FileError for a file that does not exist or a folder that
+/// holds no recording.
+std::vector<std::filesystem::path> expand_folders(const std::vector<std::filesystem::path>& inputs);
+
+/// Several recordings, in the order of their files.
+struct Takes {
+  std::vector<Clip> clips;
+  std::vector<double> read_seconds;  ///< per clip
+};
+
+/// Reads files on up to `jobs` threads and requires every selected sample to be a number of
+/// sensible size. If several files are wrong, reports the first of them. Throws Cancelled.
+Takes read_takes(const std::vector<std::filesystem::path>& files, const InputOptions& options,
+                 int jobs, std::stop_token stop);
+
+}  // namespace moclean::cli

@@ -1,0 +1,87 @@
+#include "cli/json_record.hpp"
+
+namespace moclean::cli {
+namespace {
+
+Json segmentation_record(const Segmentation& segmentation) {
+  if (segmentation.whole) return {{"whole", true}};
+  if (segmentation.segments > 0) return {{"segments", segmentation.segments}};
+  return {{"length", segmentation.length}};
+}
+
+// lambda is null where it follows from lambda_scale and the size of the segment.
+Json method_record(const DenoiseOptions& options) {
+  const RobustPca& method = options.method;
+  Json record;
+  record["name"] = options.method_name;
+  record["segmentation"] = segmentation_record(options.segmentation);
+  record["lambda"] = method.lambda > 0 ? Json(method.lambda) : Json(nullptr);
+  record["lambda_scale"] = method.lambda_scale;
+  record["rho"] = method.rho;
+  record["mu0_factor"] = method.mu0_factor;
+  record["mu_max_factor"] = method.mu_max_factor;
+  record["tolerance"] = method.tolerance;
+  record["max_iterations"] = method.max_iterations;
+  record["order"] = to_string(method.order);
+  return record;
+}
+
+Json segment_record(const DenoisedSegment& segment) {
+  Json record;
+  record["first_frame"] = segment.first_frame;
+  record["frames"] = segment.frames;
+  record["iterations"] = segment.outcome.iterations;
+  record["rank"] = segment.outcome.rank;
+  record["residual"] = segment.outcome.residual;
+  record["converged"] = segment.outcome.converged;
+  return record;
+}
+
+Json agreement_record(const Verification& verification) {
+  Json record;
+  record["low_rank"] = verification.agreement.low_rank;
+  record["sparse"] = verification.agreement.sparse;
+  record["largest_difference"] = verification.largest_difference;
+  record["same_iterations"] = verification.agreement.same_iterations;
+  record["same_rank"] = verification.agreement.same_rank;
+  return record;
+}
+
+Json take_record(const TakeReport& take) {
+  Json record;
+  record["file"] = take.file.string();
+  record["frames"] = take.frames;
+  record["columns"] = take.columns;
+  record["seconds"]["read"] = take.read_seconds;
+  record["seconds"]["solve"] = take.solve_seconds;
+  record["seconds"]["write"] = take.write_seconds;
+  record["frames_per_second"] = take.frames_per_second();
+  record["segments"] = Json::array();
+  for (const DenoisedSegment& segment : take.segments)
+    record["segments"].push_back(segment_record(segment));
+  if (take.verification) record["agreement"] = agreement_record(*take.verification);
+  return record;
+}
+
+}  // namespace
+
+double TakeReport::frames_per_second() const {
+  return solve_seconds > 0 ? static_cast<double>(frames) / solve_seconds : 0;
+}
+
+Json json_record(const DenoiseOptions& options, const std::string& device,
+                 const std::vector<TakeReport>& takes) {
+  Json record;
+  record["version"] = MOCLEAN_VERSION;
+  record["device"] = device;
+  record["method"] = method_record(options);
+  record["inputs"] = Json::array();
+  for (const TakeReport& take : takes) record["inputs"].push_back(take_record(take));
+  return record;
+}
+
+std::string to_text(const Json& json) {
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace moclean::cli

@@ -1,0 +1,67 @@
+// The program `moclean`. Reads the command line, runs one command, and turns every exception into a
+// message and an exit code.
+
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "moclean/core/error.hpp"
+
+#include "cli/commands.hpp"
+
+namespace moclean::cli {
+namespace {
+
+ExitCode fail(ExitCode code, std::string_view message) {
+  // Not fmt::print, which throws when standard error is closed.
+  std::fputs(fmt::format("moclean: {}\n", message).c_str(), stderr);
+  return code;
+}
+
+// The command the user got wrong, or the program itself if no command was recognised.
+std::string help_command(const CLI::App& program) {
+  const auto chosen = program.get_subcommands();
+  return chosen.empty() ? "moclean --help"
+                        : fmt::format("moclean {} --help", chosen[0]->get_name());
+}
+
+ExitCode run_program(int count, char** arguments) {
+  CLI::App program("Cleans human motion-capture recordings on OpenCL devices.", "moclean");
+  program.set_version_flag("--version", "moclean " MOCLEAN_VERSION);
+  program.require_subcommand(1);
+  program.footer(
+      "Exit codes: 0 done, 1 failed input or device, 2 usage, 3 a segment did not converge,\n"
+      "130 interrupted.\n\n"
+      "Example:\n  moclean denoise walk.bvh -o clean.csv");
+  Action action;
+  add_denoise(program, action);
+  add_corrupt(program, action);
+  add_evaluate(program, action);
+  add_convert(program, action);
+  add_info(program, action);
+  add_devices(program, action);
+
+  try {
+    program.parse(count, arguments);
+    return action();
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) {  // --help and --version
+      program.exit(error);
+      return ExitCode::done;
+    }
+    return fail(ExitCode::usage, fmt::format("{} (see {})", error.what(), help_command(program)));
+  } catch (const ArgumentError& error) {
+    return fail(ExitCode::usage, error.what());
+  } catch (const Cancelled&) {
+    return fail(ExitCode::interrupted, "interrupted; nothing was written");
+  } catch (const std::exception& error) {
+    return fail(ExitCode::failed, error.what());
+  }
+}
+
+}  // namespace
+}  // namespace moclean::cli
+
+int main(int count, char** arguments) {
+  return static_cast<int>(moclean::cli::run_program(count, arguments));
+}

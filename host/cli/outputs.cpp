@@ -1,0 +1,116 @@
+#include "cli/outputs.hpp"
+
+#include <map>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "moclean/core/error.hpp"
+#include "moclean/io/extension.hpp"
+
+namespace moclean::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool can_be_written(const fs::path& file) {
+  return extension(file) == ".csv" || extension(file) == ".npy";
+}
+
+fs::path folder_of(const fs::path& file) {
+  return file.has_parent_path() ? file.parent_path() : fs::path(".");
+}
+
+void require_writable_folder(const fs::path& folder, const fs::path& target) {
+  if (!fs::is_directory(folder))
+    throw FileError(target,
+                    fmt::format("cannot be written: there is no folder {}", folder.string()));
+  if (access(folder.c_str(), W_OK | X_OK) != 0)
+    throw FileError(
+        target, fmt::format("cannot be written: no permission to write into {}", folder.string()));
+}
+
+// A folder that may have to be created: the nearest one that exists has to be writable.
+void require_creatable_folder(const fs::path& folder) {
+  const fs::path plain =
+      folder.has_filename() ? folder : folder.parent_path();  // no slash at its end
+  if (fs::exists(plain) && !fs::is_directory(plain))
+    throw ArgumentError(fmt::format(
+        "{} is a file; several inputs, or a folder of them, need a folder for the results",
+        plain.string()));
+  fs::path existing = fs::absolute(folder).lexically_normal();
+  while (!fs::exists(existing)) existing = existing.parent_path();
+  require_writable_folder(existing, folder);
+}
+
+bool names_folder(const fs::path& path) { return !path.has_filename() || fs::is_directory(path); }
+
+bool wants_folder(const OutputRequest& request) {
+  return request.inputs.size() > 1 || fs::is_directory(request.inputs.front()) ||
+         names_folder(request.output);
+}
+
+std::string extension_of_result(const fs::path& input, const std::string& format) {
+  if (!format.empty()) return "." + format;
+  return can_be_written(input) ? extension(input) : ".npy";
+}
+
+std::vector<fs::path> files_in(const fs::path& folder, const OutputRequest& request) {
+  std::map<fs::path, fs::path> inputs;
+  std::vector<fs::path> results;
+  for (const fs::path& input : request.files) {
+    const fs::path name = input.stem().string() + extension_of_result(input, request.format);
+    const auto [other, first] = inputs.emplace(input.stem(), input);
+    if (!first)
+      throw ArgumentError(fmt::format("{} and {} would both become {}; give them in two calls",
+                                      other->second.string(), input.string(),
+                                      (folder / input.stem()).string()));
+    results.push_back(folder / name);
+  }
+  return results;
+}
+
+void require_format(const fs::path& file, const std::string& format) {
+  require_writable_clip(file);
+  if (!format.empty() && extension(file) != "." + format)
+    throw ArgumentError(fmt::format("--format {} contradicts {}", format, file.string()));
+}
+
+}  // namespace
+
+void require_writable(const fs::path& file) {
+  if (fs::is_directory(file)) throw FileError(file, "cannot be written: it is a folder");
+  require_writable_folder(folder_of(file), file);
+}
+
+void require_writable_clip(const fs::path& file) {
+  if (!can_be_written(file))
+    throw ArgumentError(
+        fmt::format("{}: cannot write this format, expected .csv or .npy", file.string()));
+  require_writable(file);
+}
+
+OutputPlan plan_outputs(const OutputRequest& request) {
+  OutputPlan plan;
+  if (wants_folder(request)) {
+    plan.clean = files_in(request.output, request);
+    plan.folders.push_back(request.output);
+    if (!request.outliers.empty()) {
+      plan.outliers = files_in(request.outliers, request);
+      plan.folders.push_back(request.outliers);
+    }
+    for (const fs::path& folder : plan.folders) require_creatable_folder(folder);
+  } else {
+    plan.clean = {request.output};
+    if (!request.outliers.empty()) plan.outliers = {request.outliers};
+    for (const auto& files : {plan.clean, plan.outliers})
+      for (const fs::path& file : files) require_format(file, request.format);
+  }
+  for (std::size_t i = 0; i < plan.outliers.size(); ++i)
+    if (fs::weakly_canonical(plan.clean[i]) == fs::weakly_canonical(plan.outliers[i]))
+      throw ArgumentError(
+          fmt::format("-o and --outliers would both write {}", plan.clean[i].string()));
+  return plan;
+}
+
+}  // namespace moclean::cli

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "moclean/solve/backend.hpp"
+
+namespace moclean::cli {
+
+/// One line on standard error that says how far a computation is; nothing if standard error is not
+/// a terminal. The destructor clears it.
+class ProgressLine {
+ public:
+  /// `task` starts the line, e.g. "solving".
+  ProgressLine(std::string task, bool wanted);
+  ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+
+  /// Rewrites the line, at most ten times a second.
+  void show(const Progress& progress);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  std::string task_;
+  bool visible_;
+  Clock::time_point begin_ = Clock::now();
+  Clock::time_point shown_ = {};
+};
+
+/// The text of the line, for instance `solving: 12 of 140 segments, 35.0 segments/s, 4 s left`.
+/// Rate and time left are absent until a segment has finished.
+std::string progress_text(const std::string& task, const Progress& progress, double seconds);
+
+}  // namespace moclean::cli

@@ -1,0 +1,122 @@
+// Signals, and what is shown on a terminal: both need a run that takes a while.
+
+#include <gmock/gmock.h>
+#include <signal.h>
+
+#include "cli/program.hpp"
+#include "support/synthetic_walk.hpp"
+
+namespace moclean::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+// A run of the reference that shows its progress: 10 s where it is stopped, a second where not.
+std::vector<std::string> long_run(const TemporaryFolder& folder, Index frames) {
+  return {"denoise",   folder.write("walk.npy", synthetic_walk(frames)),
+          "-o",        folder / "clean.npy",
+          "--json",    folder / "record.json",
+          "--backend", "reference",
+          "--jobs",    "1"};
+}
+
+class Interrupted : public ::testing::TestWithParam<int> {};
+
+TEST_P(Interrupted, StopsWithoutAnyOutput) {
+  const TemporaryFolder folder;
+  Program program(long_run(folder, 20000), {.device = "", .terminal = true});
+  ASSERT_TRUE(program.shows("of 100 segments"));
+
+  program.send(GetParam());
+  const Outcome outcome = program.wait();
+
+  EXPECT_EQ(outcome.exit_code, 130);
+  EXPECT_THAT(outcome.err, HasSubstr("interrupted"));
+  EXPECT_THAT(outcome.out, IsEmpty());
+  EXPECT_THAT(folder.names(), ElementsAre("walk.npy"));
+}
+
+INSTANTIATE_TEST_SUITE_P(Signals, Interrupted, ::testing::Values(SIGINT, SIGTERM),
+                         [](const auto& test) {
+                           return test.param == SIGINT ? "Interrupt" : "Terminate";
+                         });
+
+TEST(Interrupt, StopsTheDevice) {
+  const TemporaryFolder folder;
+  const std::string walk = folder.write("walk.npy", synthetic_walk(20000));
+  Program program({"denoise", walk, "-o", folder / "clean.npy"}, {.device = "", .terminal = true});
+  ASSERT_TRUE(program.shows("solving"));
+
+  program.send(SIGINT);
+
+  EXPECT_EQ(program.wait().exit_code, 130);
+  EXPECT_THAT(folder.names(), ElementsAre("walk.npy"));
+}
+
+TEST(Interrupt, LeavesAnEarlierResultAsItWas) {
+  const TemporaryFolder folder;
+  const std::string earlier = folder.write_text("clean.npy", "earlier");
+  Program program(long_run(folder, 20000), {.device = "", .terminal = true});
+  ASSERT_TRUE(program.shows("of 100 segments"));
+
+  program.send(SIGINT);
+
+  EXPECT_EQ(program.wait().exit_code, 130);
+  EXPECT_EQ(content(earlier), "earlier");
+}
+
+TEST(Interrupt, KilledRunLeavesNoHalfFile) {
+  const TemporaryFolder folder;
+  Program program(long_run(folder, 20000), {.device = "", .terminal = true});
+  ASSERT_TRUE(program.shows("of 100 segments"));
+
+  program.send(SIGKILL);
+
+  EXPECT_EQ(program.wait().exit_code, -SIGKILL);
+  EXPECT_THAT(folder.names(), ElementsAre("walk.npy"));
+}
+
+TEST(Interrupt, IsIgnoredWhereItWasIgnoredBefore) {
+  const TemporaryFolder folder;
+  Program program(long_run(folder, 2000),
+                  {.device = "", .terminal = true, .ignore_interrupt = true});
+  ASSERT_TRUE(program.shows("of 10 segments"));
+
+  program.send(SIGINT);
+
+  EXPECT_EQ(program.wait().exit_code, 0);
+  EXPECT_THAT(folder.names(), ElementsAre("clean.npy", "record.json", "walk.npy"));
+}
+
+TEST(Progress, IsShownOnATerminalAndClearedAtTheEnd) {
+  const TemporaryFolder folder;
+  Program program(long_run(folder, 2000), {.device = "", .terminal = true});
+
+  EXPECT_TRUE(program.shows("s left"));
+
+  const Outcome outcome = program.wait();
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, ::testing::EndsWith("\r\033[K"));
+}
+
+TEST(Progress, IsAbsentFromAFileAndWithQuiet) {
+  const TemporaryFolder folder;
+  std::vector<std::string> arguments = long_run(folder, 1000);
+
+  const Outcome to_file = run(arguments);
+  arguments.push_back("--quiet");
+  Program quiet(arguments, {.device = "", .terminal = true});
+  const Outcome quiet_outcome = quiet.wait();
+
+  EXPECT_EQ(to_file.exit_code, 0);
+  EXPECT_THAT(to_file.err, IsEmpty());
+  EXPECT_THAT(to_file.out, Not(IsEmpty()));
+  EXPECT_THAT(quiet_outcome.err, IsEmpty());
+  EXPECT_THAT(quiet_outcome.out, IsEmpty());
+}
+
+}  // namespace
+}  // namespace moclean::test

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+#include <sys/types.h>
+
+#include "moclean/motion/clip.hpp"
+
+namespace moclean::test {
+
+/// A new folder that is removed with everything in it.
+class TemporaryFolder {
+ public:
+  TemporaryFolder();
+  ~TemporaryFolder();
+  TemporaryFolder(const TemporaryFolder&) = delete;
+  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+
+  /// The path of a file in the folder.
+  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
+
+  /// Writes a clip and returns its path.
+  std::string write(const std::string& name, const Clip& clip) const;
+
+  /// Writes a text file and returns its path.
+  std::string write_text(const std::string& name, const std::string& text) const;
+
+  /// The names of everything in it, hidden files included, sorted; sub-folders as `name/file`.
+  std::vector<std::string> names() const;
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// The whole content of a file.
+std::string content(const std::filesystem::path& file);
+
+/// How a run of `moclean` ended.
+struct Outcome {
+  int exit_code = 0;  ///< negative: the signal that killed it
+  std::string out;
+  std::string err;
+
+  nlohmann::json json() const { return nlohmann::json::parse(out); }
+};
+
+/// How `moclean` is started.
+struct Start {
+  std::string device;             ///< MOCLEAN_DEVICE; unset where empty
+  bool terminal = false;          ///< standard error is a terminal
+  bool ignore_interrupt = false;  ///< SIGINT is ignored, as under nohup
+};
+
+/// A running `moclean`.
+class Program {
+ public:
+  explicit Program(const std::vector<std::string>& arguments, const Start& start = {});
+  ~Program();
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  /// Waits until standard error, a terminal, has shown the text; false if the program ended first.
+  bool shows(const std::string& text);
+
+  void send(int signal) const;
+
+  /// Waits for the end.
+  Outcome wait();
+
+ private:
+  void read_terminal();
+
+  pid_t process_ = 0;
+  int out_ = -1;
+  int err_ = -1;       // file, or master side of the terminal
+  int terminal_ = -1;  // the other side, kept open so that nothing unread is lost
+  std::string shown_;
+};
+
+/// Runs `moclean` to its end.
+Outcome run(const std::vector<std::string>& arguments, const Start& start = {});
+
+}  // namespace moclean::test
