@@ -4,8 +4,8 @@
 //
 // A is scaled by a power of two to entries below 2, so neither tiny nor huge data over- or
 // underflows. A graded matrix, entry (i, j) of the size g_i g_j with decreasing g, keeps its small
-// eigenvalues to relative accuracy: the reduction starts at the large end, QL at the small one (T is
-// turned around in between), and an off-diagonal is negligible relative to its neighbours.
+// eigenvalues to relative accuracy: the reduction starts at the large end, QL at the small one (T
+// is turned around in between), and an off-diagonal is negligible relative to its neighbours.
 // Launch: one work-item per active segment.
 //
 // Notation: d, e diagonal and off-diagonal of the tridiagonal T = Q'AQ; H = I - u u', |u|^2 = 2;
@@ -68,8 +68,8 @@ inline real reflector(global const real* row, global real* u, int k, int n, int 
   return e;
 }
 
-// One pass over the rows i > k of A: a_i -= v_i w + w_i v (the previous step's update, delayed until
-// the row is read anyway), and p = sum_i u_i a_i.
+// One pass over the rows i > k of A: a_i -= v_i w + w_i v (the previous step's update, delayed
+// until the row is read anyway), and p = sum_i u_i a_i.
 inline void update_and_multiply(global real* a, global const real* v, global const real* w,
                                 global const real* u, global real* p, int k, int n, int pitch) {
   for (int j = (k + 1) / VW * VW; j < pitch; j += VW) {
@@ -235,12 +235,12 @@ inline void sort_into(global const real* vectors, global const real* d, global r
 kernel void symmetric_eigen(global const segment_t* segments,  // [segments]
                             global const int* active,          // [active_count]
                             int active_count,
-                            global real* a,           // upper triangles; destroyed
-                            global real* z,           // eigenvectors in rows
-                            global real* values,      // eigenvalues
-                            global real* work,        // scratch like a
-                            global real* scratch,     // 5 vectors per segment
-                            global int* failed) {     // [segments]: set to 1 where QL gave up
+                            global real* a,        // upper triangles; destroyed
+                            global real* z,        // eigenvectors in rows
+                            global real* values,   // eigenvalues
+                            global real* work,     // scratch like a
+                            global real* scratch,  // 5 vectors per segment
+                            global int* failed) {  // [segments]: set to 1 where QL gave up
   const int item = get_global_id(0);
   if (item >= active_count) return;
   const segment_t segment = segments[active[item]];

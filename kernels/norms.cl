@@ -8,9 +8,9 @@
 kernel void block_norms(global const segment_t* segments,  // [segments]
                         global const block_t* blocks,      // [blocks]
                         int block_count,
-                        global const real* data,           // [rows x pitch] stacked
-                        global real* partial_squares,      // [all blocks]
-                        global real* partial_largest) {    // [all blocks]
+                        global const real* data,         // [rows x pitch] stacked
+                        global real* partial_squares,    // [all blocks]
+                        global real* partial_largest) {  // [all blocks]
   const int item = get_global_id(0);
   if (item >= block_count) return;
   const block_t block = blocks[item];
@@ -28,13 +28,13 @@ kernel void block_norms(global const segment_t* segments,  // [segments]
   partial_largest[s.first_block + block.block] = lane_max(largest);
 }
 
-kernel void segment_norms(global const segment_t* segments,     // [segments]
-                          global const int* active,             // [active_count]
+kernel void segment_norms(global const segment_t* segments,  // [segments]
+                          global const int* active,          // [active_count]
                           int active_count,
-                          global const real* partial_squares,   // [all blocks]
-                          global const real* partial_largest,   // [all blocks]
-                          global real* frobenius,               // [segments]
-                          global real* largest) {               // [segments]
+                          global const real* partial_squares,  // [all blocks]
+                          global const real* partial_largest,  // [all blocks]
+                          global real* frobenius,              // [segments]
+                          global real* largest) {              // [segments]
   const int item = get_global_id(0);
   if (item >= active_count) return;
   const segment_t s = segments[active[item]];

@@ -1,4 +1,5 @@
-// Prepended to every program: the number type, explicit vectors of VW reals, and the segment record.
+// Prepended to every program: the number type, explicit vectors of VW reals, and the segment
+// record.
 //
 // VW is the device's native vector width: compilers that do not vectorise across work-items (PoCL)
 // still fill their vector units, and a device that works on scalars gets VW = 1.

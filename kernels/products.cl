@@ -6,10 +6,10 @@
 //   compose      C = PZ
 //   basis        Z', or Z for a wide segment: what to apply to express X in the rows of Z
 //
-// A work-item computes tiles of TILE_ROWS rows x TILE_VECTORS vectors in registers; tiles that reach
-// past the edge clamp their reads and skip their writes. Every sum runs over k in increasing order.
-// Launch: (tiles across, tiles down the largest order, active segments) for all but apply, which
-// takes one work-item per block of rows, and basis, one per row of a square matrix.
+// A work-item computes tiles of TILE_ROWS rows x TILE_VECTORS vectors in registers; tiles that
+// reach past the edge clamp their reads and skip their writes. Every sum runs over k in increasing
+// order. Launch: (tiles across, tiles down the largest order, active segments) for all but apply,
+// which takes one work-item per block of rows, and basis, one per row of a square matrix.
 
 #ifndef TILE_ROWS
 #error "TILE_ROWS is not defined: rows of a register tile"
@@ -31,8 +31,8 @@ inline void store_tile(vreal tile[TILE_ROWS][TILE_VECTORS], global real* target,
         store(target + (row + r) * (size_t)pitch + column + v * VW, tile[r][v]);
 }
 
-// target tile = sum_k weight_k left[k][row ..] right[k][column ..], k = 0 .. depth - 1; both operands
-// have `pitch`, and rows past `order` in the tile read the padding, which is zero.
+// target tile = sum_k weight_k left[k][row ..] right[k][column ..], k = 0 .. depth - 1; both
+// operands have `pitch`, and rows past `order` in the tile read the padding, which is zero.
 inline void tile_of_outer_products(global const real* m, int pitch, int depth,
                                    global const real* weight, global real* target, int order,
                                    int row, int column) {
@@ -86,8 +86,8 @@ inline void tile_of_product(global const real* left, int left_pitch, global cons
 }
 
 // G[i][j] = x_i . x_j for the tile's rows i and columns j >= i of a wide segment.
-inline void tile_of_row_products(global const real* x, const segment_t s, global real* gram, int row,
-                                 int column) {
+inline void tile_of_row_products(global const real* x, const segment_t s, global real* gram,
+                                 int row, int column) {
   for (int i = row; i < min(row + TILE_ROWS, s.order); ++i)
     for (int j = column; j < min(column + TILE_COLUMNS, s.order); ++j) {
       vreal sum = 0;
@@ -100,7 +100,7 @@ inline void tile_of_row_products(global const real* x, const segment_t s, global
 kernel void gram(global const segment_t* segments,  // [segments]
                  global const int* active,          // [active segments]
                  global const real* x,              // [rows x pitch] stacked
-                 global real* g) {                  // order x order matrices; upper triangle written
+                 global real* g) {  // order x order matrices; upper triangle written
   const segment_t s = segments[active[get_global_id(2)]];
   const int column = get_global_id(0) * TILE_COLUMNS;
   const int row = get_global_id(1) * TILE_ROWS;
@@ -147,7 +147,8 @@ kernel void basis(global const segment_t* segments,  // [segments]
   if (row >= s.order) return;
   global real* target = b + s.square + row * (size_t)s.order_pitch;
   for (int j = 0; j < s.order_pitch; ++j) {
-    const size_t source = is_wide(s) ? row * (size_t)s.order_pitch + j : j * (size_t)s.order_pitch + row;
+    const size_t source =
+        is_wide(s) ? row * (size_t)s.order_pitch + j : j * (size_t)s.order_pitch + row;
     target[j] = j < s.order ? z[s.square + source] : 0;
   }
 }
@@ -155,9 +156,9 @@ kernel void basis(global const segment_t* segments,  // [segments]
 kernel void apply(global const segment_t* segments,  // [segments]
                   global const block_t* blocks,      // [block_count]
                   int block_count,
-                  global const real* x,              // [rows x pitch] stacked
-                  global const real* w,              // order x order matrices
-                  global real* a) {                  // [rows x pitch] stacked
+                  global const real* x,  // [rows x pitch] stacked
+                  global const real* w,  // order x order matrices
+                  global real* a) {      // [rows x pitch] stacked
   const int item = get_global_id(0);
   if (item >= block_count) return;
   const segment_t s = segments[blocks[item].segment];
@@ -168,6 +169,6 @@ kernel void apply(global const segment_t* segments,  // [segments]
   const int left_pitch = is_wide(s) ? s.order_pitch : s.pitch;
   for (int column = 0; column < s.pitch; column += TILE_COLUMNS)
     for (int row = block_begin(blocks[item]); row < end; row += TILE_ROWS)
-      tile_of_product(left, left_pitch, right, s.pitch, s.order, a + s.first_row * s.pitch, row, end,
-                      column);
+      tile_of_product(left, left_pitch, right, s.pitch, s.order, a + s.first_row * s.pitch, row,
+                      end, column);
 }

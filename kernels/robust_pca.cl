@@ -9,20 +9,21 @@
 //                        X+ = D - E+ + Y+/mu+        (E is kept: it belongs to A, E+ to the next A)
 //   advance    residual = |D - A - E|_F, mu = mu+, iteration count, convergence
 //
-// Launch: one work-item per block of rows (start, shrink) or per active segment (threshold, advance).
+// Launch: one work-item per block of rows (start, shrink) or per active segment (threshold,
+// advance).
 
 typedef struct {
-  real mu;           // of the running iteration
-  real mu_next;      // of the one after it
+  real mu;       // of the running iteration
+  real mu_next;  // of the one after it
   real mu_max;
   real lambda;
-  real dual_scale;   // Y_0 = D * dual_scale
-  real residual;     // |D - A - E|_F / |D|_F after the last iteration
+  real dual_scale;  // Y_0 = D * dual_scale
+  real residual;    // |D - A - E|_F / |D|_F after the last iteration
   int iterations;
   int rank;
   int converged;
-  int order_ea;      // 1: E is updated before A
-} state_t;           // mirrors moclean::opencl::SegmentState
+  int order_ea;  // 1: E is updated before A
+} state_t;       // mirrors moclean::opencl::SegmentState
 
 inline vreal soft(vreal t, real threshold) {
   return t - clamp(t, (vreal)(-threshold), (vreal)(threshold));
@@ -31,12 +32,12 @@ inline vreal soft(vreal t, real threshold) {
 kernel void start_state(global const segment_t* segments,  // [segments]
                         global const int* active,          // [active_count]
                         int active_count,
-                        global const real* eigenvalues,    // of D'D
-                        global const real* largest,        // [segments]: max |D_ij|
-                        real lambda,                       // 0: lambda_scale / sqrt(max(rows, columns))
+                        global const real* eigenvalues,  // of D'D
+                        global const real* largest,      // [segments]: max |D_ij|
+                        real lambda,  // 0: lambda_scale / sqrt(max(rows, columns))
                         real lambda_scale, real mu0_factor, real mu_max_factor, real rho,
                         int order_ea,
-                        global state_t* states) {          // [segments]
+                        global state_t* states) {  // [segments]
   const int item = get_global_id(0);
   if (item >= active_count) return;
   const segment_t s = segments[active[item]];
@@ -61,11 +62,11 @@ kernel void start_state(global const segment_t* segments,  // [segments]
 kernel void start(global const segment_t* segments,  // [segments]
                   global const block_t* blocks,      // [block_count]
                   int block_count,
-                  global const state_t* states,      // [segments]
-                  global const real* data,           // D [rows x pitch] stacked
-                  global real* y,                    // Y
-                  global real* e,                    // E
-                  global real* x) {                  // X
+                  global const state_t* states,  // [segments]
+                  global const real* data,       // D [rows x pitch] stacked
+                  global real* y,                // Y
+                  global real* e,                // E
+                  global real* x) {              // X
   const int item = get_global_id(0);
   if (item >= block_count) return;
   const segment_t s = segments[blocks[item].segment];
@@ -87,9 +88,9 @@ kernel void start(global const segment_t* segments,  // [segments]
 kernel void threshold(global const segment_t* segments,  // [segments]
                       global const int* active,          // [active_count]
                       int active_count,
-                      global const real* eigenvalues,    // sigma^2, `order` per segment
-                      global state_t* states,            // [segments]
-                      global real* f) {                  // `order` per segment
+                      global const real* eigenvalues,  // sigma^2, `order` per segment
+                      global state_t* states,          // [segments]
+                      global real* f) {                // `order` per segment
   const int item = get_global_id(0);
   if (item >= active_count) return;
   const segment_t s = segments[active[item]];
@@ -106,13 +107,13 @@ kernel void threshold(global const segment_t* segments,  // [segments]
 kernel void shrink(global const segment_t* segments,  // [segments]
                    global const block_t* blocks,      // [block_count]
                    int block_count,
-                   global const state_t* states,      // [segments]
-                   global const real* data,           // D [rows x pitch] stacked
-                   global const real* a,              // A
-                   global real* y,                    // Y -> Y+
-                   global real* e,                    // E, order ae: new; order ea: of this iteration
-                   global real* x,                    // X -> X+
-                   global real* partial_squares) {    // [all blocks]: |D - A - E|_F^2
+                   global const state_t* states,    // [segments]
+                   global const real* data,         // D [rows x pitch] stacked
+                   global const real* a,            // A
+                   global real* y,                  // Y -> Y+
+                   global real* e,                  // E, order ae: new; order ea: of this iteration
+                   global real* x,                  // X -> X+
+                   global real* partial_squares) {  // [all blocks]: |D - A - E|_F^2
   const int item = get_global_id(0);
   if (item >= block_count) return;
   const segment_t s = segments[blocks[item].segment];
@@ -129,9 +130,9 @@ kernel void shrink(global const segment_t* segments,  // [segments]
                              : soft(fma(dual, (vreal)inverse_mu, gap), state->lambda * inverse_mu);
     const vreal rest = gap - sparse;
     const vreal dual_next = fma((vreal)state->mu, rest, dual);
-    const vreal sparse_next =
-        state->order_ea ? soft(fma(dual_next, (vreal)inverse_next, gap), state->lambda * inverse_next)
-                       : sparse;
+    const vreal sparse_next = state->order_ea ? soft(fma(dual_next, (vreal)inverse_next, gap),
+                                                     state->lambda * inverse_next)
+                                              : sparse;
     squares = fma(rest, rest, squares);
     store(y + i, dual_next);
     store(e + i, sparse);
@@ -140,13 +141,13 @@ kernel void shrink(global const segment_t* segments,  // [segments]
   partial_squares[s.first_block + blocks[item].block] = lane_sum(squares);
 }
 
-kernel void advance(global const segment_t* segments,     // [segments]
-                    global const int* active,             // [active_count]
+kernel void advance(global const segment_t* segments,  // [segments]
+                    global const int* active,          // [active_count]
                     int active_count,
-                    global const real* partial_squares,   // [all blocks]
-                    global const real* frobenius,         // [segments]: |D|_F
+                    global const real* partial_squares,  // [all blocks]
+                    global const real* frobenius,        // [segments]: |D|_F
                     real rho, real tolerance,
-                    global state_t* states) {             // [segments]
+                    global state_t* states) {  // [segments]
   const int item = get_global_id(0);
   if (item >= active_count) return;
   const segment_t s = segments[active[item]];

@@ -8,8 +8,9 @@
 namespace moclean {
 namespace {
 
-// Natural logarithm for x in (0, 1] from exactly rounded operations only, error below 4e-16 (1 + |ln x|):
-// x = m 2^e with m in [sqrt(1/2), sqrt(2)), ln m = 2 atanh(z), z = (m - 1)/(m + 1), |z| < 0.1716.
+// Natural logarithm for x in (0, 1] from exactly rounded operations only, error below 4e-16 (1 +
+// |ln x|): x = m 2^e with m in [sqrt(1/2), sqrt(2)), ln m = 2 atanh(z), z = (m - 1)/(m + 1), |z| <
+// 0.1716.
 double portable_log(double x) {
   constexpr double sqrt_half = 0.70710678118654752440;
   constexpr double ln2 = 0.69314718055994530942;

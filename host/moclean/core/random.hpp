@@ -10,9 +10,9 @@ namespace moclean {
 
 /// Seeded random numbers that are the same bits on every platform and compiler.
 ///
-/// Generator: std::mt19937_64, whose sequence the C++ standard fixes. The distributions are our own,
-/// because those of the standard library differ between implementations, and use only operations
-/// IEEE 754 rounds exactly (+ - * / sqrt); even the logarithm is our own.
+/// Generator: std::mt19937_64, whose sequence the C++ standard fixes. The distributions are our
+/// own, because those of the standard library differ between implementations, and use only
+/// operations IEEE 754 rounds exactly (+ - * / sqrt); even the logarithm is our own.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : generator_(seed) {}

@@ -26,9 +26,7 @@ ConstMatrixView SegmentBatch::block(Index first, Index count) const {
   return {storage_.data() + first * pitch(), count, columns_, Eigen::OuterStride<>(pitch())};
 }
 
-MatrixView SegmentBatch::segment(Index segment) {
-  return block(first_row(segment), rows(segment));
-}
+MatrixView SegmentBatch::segment(Index segment) { return block(first_row(segment), rows(segment)); }
 
 ConstMatrixView SegmentBatch::segment(Index segment) const {
   return block(first_row(segment), rows(segment));

@@ -19,9 +19,9 @@ constexpr Index padded(Index columns) {
 /// All frames of all segments stacked in one tall row-major matrix [rows() x pitch()].
 ///
 /// Segment b owns the rows first_row(b) up to first_row(b + 1); segments may differ in length but
-/// share the number of columns. The padding columns() .. pitch() - 1 is zero, and every writer keeps
-/// it zero: kernels rely on it. This is the one home of the memory layout; device buffers copy it
-/// byte for byte.
+/// share the number of columns. The padding columns() .. pitch() - 1 is zero, and every writer
+/// keeps it zero: kernels rely on it. This is the one home of the memory layout; device buffers
+/// copy it byte for byte.
 class SegmentBatch {
  public:
   SegmentBatch() = default;
@@ -47,7 +47,9 @@ class SegmentBatch {
   ConstMatrixView block(Index first, Index count) const;
 
   /// The raw storage with padding, rows() * pitch() doubles.
-  std::span<double> storage() { return {storage_.data(), static_cast<std::size_t>(storage_.size())}; }
+  std::span<double> storage() {
+    return {storage_.data(), static_cast<std::size_t>(storage_.size())};
+  }
   std::span<const double> storage() const {
     return {storage_.data(), static_cast<std::size_t>(storage_.size())};
   }

@@ -60,8 +60,8 @@ class ClblastProducts {
   Buffer<double> scaled_;
 };
 
-/// The products of an iteration, for the active segments of a batch. X, A and B are stacked matrices,
-/// G, Z, P, C and W are square matrices of size `order`, f is a vector.
+/// The products of an iteration, for the active segments of a batch. X, A and B are stacked
+/// matrices, G, Z, P, C and W are square matrices of size `order`, f is a vector.
 ///   gram         G = X'X (XX' for a wide segment); at least the upper triangle is written
 ///   reconstruct  W = sum_k f_k z_k z_k', z_k the rows of Z, f_k >= 0
 ///   apply        A = XW (WX for a wide segment)
