@@ -14,8 +14,13 @@
 namespace moclean {
 namespace {
 
+// Under the sanitizers, which slow the reference down by five, the short takes have to do.
+#ifdef __SANITIZE_ADDRESS__
+constexpr auto cmu_takes = {"02/02_01", "09/09_06", "16/16_22"};
+#else
 constexpr auto cmu_takes = {"02/02_01", "02/02_05", "05/05_12", "09/09_06", "09/09_12",
                             "14/14_06", "14/14_24", "16/16_22", "17/17_10", "49/49_18"};
+#endif
 
 struct Row {
   Index length;  // frames of a segment; 0: whole take
