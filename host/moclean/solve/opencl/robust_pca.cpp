@@ -80,14 +80,14 @@ std::vector<std::int32_t> nonzero_segments(const Batch& batch, const Buffer<doub
   return remaining;
 }
 
-std::vector<std::int32_t> unfinished(const Batch& batch, std::span<const SegmentState> states,
-                                     int max_iterations) {
-  std::vector<std::int32_t> remaining;
+/// Active segments that need another iteration, into `remaining` (room is kept from call to call).
+void collect_unfinished(const Batch& batch, std::span<const SegmentState> states,
+                        int max_iterations, std::vector<std::int32_t>& remaining) {
+  remaining.clear();
   for (const std::int32_t b : batch.active()) {
     const SegmentState& state = states[static_cast<std::size_t>(b)];
     if (!state.converged && state.iterations < max_iterations) remaining.push_back(b);
   }
-  return remaining;
 }
 
 SegmentOutcome outcome_of(const SegmentState& state) {
@@ -132,10 +132,10 @@ void RobustPcaSolver::solve(const SegmentBatch& data, Index first, Index last,
 
   // |D|_F and max|D_ij|; |D|_2 from the largest eigenvalue of D'D.
   norms_(batch, m.D, m.frobenius, m.largest);
-  const auto drop_all_but = [&](const std::vector<std::int32_t>& remaining) {
-    const auto dropped = batch.active().size() - remaining.size();
+  const auto drop_all_but = [&](const std::vector<std::int32_t>& kept) {
+    const auto dropped = batch.active().size() - kept.size();
     if (dropped == 0) return;
-    batch.select(remaining);
+    batch.select(kept);
     finished(static_cast<Index>(dropped));
   };
   drop_all_but(nonzero_segments(batch, m.frobenius));
@@ -151,6 +151,8 @@ void RobustPcaSolver::solve(const SegmentBatch& data, Index first, Index last,
          m.states, m.D, m.Y, m.E, m.X);
 
   std::vector<SegmentState> states(static_cast<std::size_t>(batch.segments()));
+  std::vector<std::int32_t> remaining;
+  remaining.reserve(states.size());
   double tau = 1 / method.mu0_factor;  // (1/mu) / |D|_2
   while (batch.active_count() > 0) {
     if (stop.stop_requested()) {
@@ -182,7 +184,8 @@ void RobustPcaSolver::solve(const SegmentBatch& data, Index first, Index last,
              m.states);
     tau = std::max(tau / method.rho, 1 / (method.mu0_factor * method.mu_max_factor));
     m.states.read(states);
-    drop_all_but(unfinished(batch, states, method.max_iterations));
+    collect_unfinished(batch, states, method.max_iterations, remaining);
+    drop_all_but(remaining);
   }
   eigen_.check(batch);
 
