@@ -19,36 +19,6 @@ namespace {
 /// the same iteration, whatever their data and neighbours.
 constexpr double graded_below = 1e-5;
 
-/// Everything one batch needs in device memory; allocated once, before the first iteration.
-struct Memory {
-  Memory(const Device& device, const Batch& batch)
-      : D(device, batch.stacked_size()),
-        A(device, batch.stacked_size()),
-        E(device, batch.stacked_size()),
-        X(device, batch.stacked_size()),
-        Y(device, batch.stacked_size()),
-        G(device, batch.square_size()),
-        Z(device, batch.square_size()),
-        W(device, batch.square_size()),
-        eigenvalues(device, batch.vector_size()),
-        f(device, batch.vector_size()),
-        partial_squares(device, batch.block_count()),
-        frobenius(device, static_cast<std::size_t>(batch.segments())),
-        largest(device, static_cast<std::size_t>(batch.segments())),
-        states(device, static_cast<std::size_t>(batch.segments())) {
-    // What no launch writes stays defined: segments of norm zero, and the padding of square
-    // matrices.
-    for (auto* buffer : {&A, &E, &G, &Z, &W}) buffer->fill_zero();
-    states.fill_zero();
-  }
-
-  Buffer<double> D, A, E, X, Y;
-  Buffer<double> G, Z, W;
-  Buffer<double> eigenvalues, f;
-  Buffer<double> partial_squares, frobenius, largest;
-  Buffer<SegmentState> states;
-};
-
 Grid per_segment(const Batch& batch) {
   return {.x = static_cast<std::size_t>(batch.active_count())};
 }
@@ -100,6 +70,36 @@ SegmentOutcome outcome_of(const SegmentState& state) {
 
 }  // namespace
 
+/// Everything one batch needs in device memory; allocated once, before the first iteration.
+struct RobustPcaSolver::Memory {
+  Memory(const Device& device, const Batch& batch)
+      : D(device, batch.stacked_size()),
+        A(device, batch.stacked_size()),
+        E(device, batch.stacked_size()),
+        X(device, batch.stacked_size()),
+        Y(device, batch.stacked_size()),
+        G(device, batch.square_size()),
+        Z(device, batch.square_size()),
+        W(device, batch.square_size()),
+        eigenvalues(device, batch.vector_size()),
+        f(device, batch.vector_size()),
+        partial_squares(device, batch.block_count()),
+        frobenius(device, static_cast<std::size_t>(batch.segments())),
+        largest(device, static_cast<std::size_t>(batch.segments())),
+        states(device, static_cast<std::size_t>(batch.segments())) {
+    // What no launch writes stays defined: segments of norm zero, and the padding of square
+    // matrices.
+    for (auto* buffer : {&A, &E, &G, &Z, &W}) buffer->fill_zero();
+    states.fill_zero();
+  }
+
+  Buffer<double> D, A, E, X, Y;
+  Buffer<double> G, Z, W;
+  Buffer<double> eigenvalues, f;
+  Buffer<double> partial_squares, frobenius, largest;
+  Buffer<SegmentState> states;
+};
+
 RobustPcaSolver::RobustPcaSolver(const Device& device, ProductPath products)
     : device_(device),
       products_(products, device),
@@ -115,12 +115,55 @@ RobustPcaSolver::RobustPcaSolver(const Device& device, ProductPath products)
 std::uint64_t RobustPcaSolver::memory_of(Index rows, Index columns) {
   const Index order = std::min(rows, columns);
   const Index stacked = 5 * rows * padded(columns);  // D A E X Y
-  const Index square = 5 * order * padded(order);    // G Z W, reflectors, scaled eigenvectors
-  const Index vectors = 6 * padded(order);           // eigenvalues, f, four of the eigensolver
+  const Index square = 5 * order * padded(order);    // G Z W, work of eigensolver and products
+  const Index vectors = 7 * padded(order);           // eigenvalues, f, five of the eigensolver
   const Index blocks = 3 * (rows / block_rows + 1);  // partial sums
   const auto bookkeeping = sizeof(SegmentRecord) + sizeof(SegmentState) + 4 * sizeof(double);
   return static_cast<std::uint64_t>(stacked + square + vectors + blocks) * sizeof(double) +
          bookkeeping + static_cast<std::uint64_t>(blocks) * sizeof(BlockRecord);
+}
+
+// Y = D / max(|D|_2, max|D_ij| / lambda), mu = mu0_factor / |D|_2, E = 0, A = 0, and the first X;
+// |D|_2 is the root of the largest eigenvalue of D'D.
+void RobustPcaSolver::start(const Batch& batch, Memory& m, const RobustPca& method) {
+  products_.gram(batch, m.D, m.G);
+  eigen_(batch, m.G, m.Z, m.eigenvalues);
+  start_state_(per_segment(batch), batch.device_segments(), batch.device_active(),
+               batch.active_count(), m.eigenvalues, m.largest, method.lambda, method.lambda_scale,
+               method.mu0_factor, method.mu_max_factor, method.rho,
+               cl_int{method.order == UpdateOrder::ea}, m.states);
+  start_(per_block(batch), batch.device_segments(), batch.device_blocks(), batch.active_blocks(),
+         m.states, m.D, m.Y, m.E, m.X);
+}
+
+// sigma^2 and the eigenvectors Z of X'X; tau is (1/mu) / |D|_2.
+void RobustPcaSolver::decompose(const Batch& batch, Memory& m, double tau) {
+  if (tau >= graded_below) {
+    products_.gram(batch, m.X, m.G);
+    eigen_(batch, m.G, m.Z, m.eigenvalues);
+    return;
+  }
+  Buffer<double>&B = m.A, &P = m.W;  // both free until the iteration writes them
+  products_.rotate(batch, m.X, m.Z, B);
+  products_.gram(batch, B, m.G);
+  eigen_(batch, m.G, P, m.eigenvalues);
+  products_.compose(batch, P, m.Z, m.G);
+  std::swap(m.Z, m.G);
+}
+
+void RobustPcaSolver::iterate(const Batch& batch, Memory& m, const RobustPca& method, double tau) {
+  // A = SVT_{1/mu}(X)
+  decompose(batch, m, tau);
+  threshold_(per_segment(batch), batch.device_segments(), batch.device_active(),
+             batch.active_count(), m.eigenvalues, m.states, m.f);
+  products_.reconstruct(batch, m.Z, m.f, m.W);
+  products_.apply(batch, m.X, m.W, m.A);
+  // E = soft(D - A + Y/mu, lambda/mu), Y = Y + mu (D - A - E), and the next X
+  shrink_(per_block(batch), batch.device_segments(), batch.device_blocks(), batch.active_blocks(),
+          m.states, m.D, m.A, m.Y, m.E, m.X, m.partial_squares);
+  // residual = |D - A - E|_F / |D|_F, mu = min(rho mu, mu_max)
+  advance_(per_segment(batch), batch.device_segments(), batch.device_active(), batch.active_count(),
+           m.partial_squares, m.frobenius, method.rho, method.tolerance, m.states);
 }
 
 void RobustPcaSolver::solve(const SegmentBatch& data, Index first, Index last,
@@ -129,59 +172,26 @@ void RobustPcaSolver::solve(const SegmentBatch& data, Index first, Index last,
   Batch batch(device_, data, first, last);
   Memory m(device_, batch);
   m.D.write(rows_of(data, first, last));
-
-  // |D|_F and max|D_ij|; |D|_2 from the largest eigenvalue of D'D.
-  norms_(batch, m.D, m.frobenius, m.largest);
   const auto drop_all_but = [&](const std::vector<std::int32_t>& kept) {
     const auto dropped = batch.active().size() - kept.size();
     if (dropped == 0) return;
     batch.select(kept);
     finished(static_cast<Index>(dropped));
   };
+
+  norms_(batch, m.D, m.frobenius, m.largest);
   drop_all_but(nonzero_segments(batch, m.frobenius));
-  products_.gram(batch, m.D, m.G);
-  eigen_(batch, m.G, m.Z, m.eigenvalues);
-
-  // Y = D / max(|D|_2, max|D_ij| / lambda), mu = mu0_factor / |D|_2, E = 0, A = 0 and the first X.
-  start_state_(per_segment(batch), batch.device_segments(), batch.device_active(),
-               batch.active_count(), m.eigenvalues, m.largest, method.lambda, method.lambda_scale,
-               method.mu0_factor, method.mu_max_factor, method.rho,
-               cl_int{method.order == UpdateOrder::ea}, m.states);
-  start_(per_block(batch), batch.device_segments(), batch.device_blocks(), batch.active_blocks(),
-         m.states, m.D, m.Y, m.E, m.X);
-
+  start(batch, m, method);
   std::vector<SegmentState> states(static_cast<std::size_t>(batch.segments()));
   std::vector<std::int32_t> remaining;
   remaining.reserve(states.size());
-  double tau = 1 / method.mu0_factor;  // (1/mu) / |D|_2
+  double tau = 1 / method.mu0_factor;
   while (batch.active_count() > 0) {
     if (stop.stop_requested()) {
       device_.finish();
       throw Cancelled();
     }
-    // A = SVT_{1/mu}(X)
-    if (tau >= graded_below) {
-      products_.gram(batch, m.X, m.G);
-      eigen_(batch, m.G, m.Z, m.eigenvalues);
-    } else {
-      Buffer<double>&B = m.A, &P = m.W;  // both free until they are written below
-      products_.rotate(batch, m.X, m.Z, B);
-      products_.gram(batch, B, m.G);
-      eigen_(batch, m.G, P, m.eigenvalues);
-      products_.compose(batch, P, m.Z, m.G);
-      std::swap(m.Z, m.G);
-    }
-    threshold_(per_segment(batch), batch.device_segments(), batch.device_active(),
-               batch.active_count(), m.eigenvalues, m.states, m.f);
-    products_.reconstruct(batch, m.Z, m.f, m.W);
-    products_.apply(batch, m.X, m.W, m.A);
-    // E = soft(D - A + Y/mu, lambda/mu), Y = Y + mu (D - A - E), and the next X
-    shrink_(per_block(batch), batch.device_segments(), batch.device_blocks(), batch.active_blocks(),
-            m.states, m.D, m.A, m.Y, m.E, m.X, m.partial_squares);
-    // residual = |D - A - E|_F / |D|_F, mu = min(rho mu, mu_max)
-    advance_(per_segment(batch), batch.device_segments(), batch.device_active(),
-             batch.active_count(), m.partial_squares, m.frobenius, method.rho, method.tolerance,
-             m.states);
+    iterate(batch, m, method, tau);
     tau = std::max(tau / method.rho, 1 / (method.mu0_factor * method.mu_max_factor));
     m.states.read(states);
     collect_unfinished(batch, states, method.max_iterations, remaining);

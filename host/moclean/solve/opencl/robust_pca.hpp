@@ -42,6 +42,12 @@ class RobustPcaSolver {
              Solution& solution, const Finished& finished, const std::stop_token& stop);
 
  private:
+  struct Memory;
+
+  void start(const Batch& batch, Memory& m, const RobustPca& method);
+  void decompose(const Batch& batch, Memory& m, double tau);
+  void iterate(const Batch& batch, Memory& m, const RobustPca& method, double tau);
+
   const Device& device_;
   Products products_;
   SymmetricEigen eigen_;
