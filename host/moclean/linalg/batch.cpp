@@ -53,6 +53,14 @@ void Batch::select(std::span<const std::int32_t> active) {
   device_blocks_.write(blocks);
 }
 
+Grid per_segment(const Batch& batch) {
+  return {.x = static_cast<std::size_t>(batch.active_count())};
+}
+
+Grid per_block(const Batch& batch) {
+  return {.x = static_cast<std::size_t>(batch.active_blocks())};
+}
+
 int vector_width(const Device& device) {
   // A width of 16 is not a width of doubles anywhere; powers of two only.
   return static_cast<int>(

@@ -76,6 +76,10 @@ class Batch {
   Buffer<BlockRecord> device_blocks_;
 };
 
+/// Launches with one work-item per active segment, and per block of their rows.
+Grid per_segment(const Batch& batch);
+Grid per_block(const Batch& batch);
+
 /// Reals in the explicit vectors of our kernels on this device: 1, 2, 4 or 8; reaches them as VW.
 int vector_width(const Device& device);
 

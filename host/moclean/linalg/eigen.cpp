@@ -39,9 +39,8 @@ void SymmetricEigen::reserve(const Batch& batch) {
 void SymmetricEigen::operator()(const Batch& batch, Buffer<double>& a, Buffer<double>& z,
                                 Buffer<double>& values) {
   reserve(batch);
-  const Grid matrices{.x = static_cast<std::size_t>(batch.active_count())};
-  kernel_(matrices, batch.device_segments(), batch.device_active(), batch.active_count(), a, z,
-          values, work_, scratch_, failed_);
+  kernel_(per_segment(batch), batch.device_segments(), batch.device_active(), batch.active_count(),
+          a, z, values, work_, scratch_, failed_);
 }
 
 void SymmetricEigen::check(const Batch& batch) {

@@ -16,12 +16,10 @@ void Norms::operator()(const Batch& batch, const Buffer<double>& x, Buffer<doubl
     partial_squares_ = Buffer<double>(*device_, batch.block_count());
     partial_largest_ = Buffer<double>(*device_, batch.block_count());
   }
-  const Grid blocks{.x = static_cast<std::size_t>(batch.active_blocks())};
-  const Grid segments{.x = static_cast<std::size_t>(batch.active_count())};
-  block_norms_(blocks, batch.device_segments(), batch.device_blocks(), batch.active_blocks(), x,
-               partial_squares_, partial_largest_);
-  segment_norms_(segments, batch.device_segments(), batch.device_active(), batch.active_count(),
-                 partial_squares_, partial_largest_, frobenius, largest);
+  block_norms_(per_block(batch), batch.device_segments(), batch.device_blocks(),
+               batch.active_blocks(), x, partial_squares_, partial_largest_);
+  segment_norms_(per_segment(batch), batch.device_segments(), batch.device_active(),
+                 batch.active_count(), partial_squares_, partial_largest_, frobenius, largest);
 }
 
 }  // namespace moclean

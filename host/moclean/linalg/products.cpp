@@ -61,8 +61,8 @@ void OwnProducts::reconstruct(const Batch& batch, const Buffer<double>& z, const
 
 void OwnProducts::apply(const Batch& batch, const Buffer<double>& x, const Buffer<double>& w,
                         Buffer<double>& a) {
-  const Grid blocks{.x = static_cast<std::size_t>(batch.active_blocks())};
-  apply_(blocks, batch.device_segments(), batch.device_blocks(), batch.active_blocks(), x, w, a);
+  apply_(per_block(batch), batch.device_segments(), batch.device_blocks(), batch.active_blocks(), x,
+         w, a);
 }
 
 void OwnProducts::rotate(const Batch& batch, const Buffer<double>& x, const Buffer<double>& z,

@@ -19,14 +19,6 @@ namespace {
 /// the same iteration, whatever their data and neighbours.
 constexpr double graded_below = 1e-5;
 
-Grid per_segment(const Batch& batch) {
-  return {.x = static_cast<std::size_t>(batch.active_count())};
-}
-
-Grid per_block(const Batch& batch) {
-  return {.x = static_cast<std::size_t>(batch.active_blocks())};
-}
-
 std::span<const double> rows_of(const SegmentBatch& batch, Index first, Index last) {
   const auto pitch = static_cast<std::size_t>(batch.pitch());
   const auto begin = static_cast<std::size_t>(batch.first_row(first)) * pitch;
