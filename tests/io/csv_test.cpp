@@ -10,6 +10,7 @@
 #include "moclean/core/error.hpp"
 #include "moclean/core/random.hpp"
 #include "moclean/io/file.hpp"
+#include "moclean/io/read_write.hpp"
 
 #include "io/temporary_folder.hpp"
 #include "io/tiny_files.hpp"
@@ -113,7 +114,7 @@ TEST(Csv, GivesBackTheSameBits) {
   clip.frame_rate = 119.88;
   clip.unit = "ASF units";
 
-  write_csv(folder.path() / "x.csv", clip);
+  write_clip(folder.path() / "x.csv", clip);
   const Clip back = parse_csv(read_file(folder.path() / "x.csv"), "x.csv");
 
   EXPECT_TRUE(same_bits(back.samples, clip.samples));
@@ -126,7 +127,7 @@ TEST(Csv, RefusesToWriteANameWithALineBreak) {
   const test::TemporaryFolder folder;
   const Clip clip{Matrix{{1}}, {"a\nb"}, 0, ""};
 
-  EXPECT_THROW(write_csv(folder.path() / "x.csv", clip), FileError);
+  EXPECT_THROW(write_clip(folder.path() / "x.csv", clip), FileError);
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 

@@ -58,6 +58,35 @@ TEST(AtomicFile, LeavesTheOldFileWhenAbandoned) {
   EXPECT_EQ(files_in(folder.path()), 1);
 }
 
+TEST(AtomicFile, WaitsClosedForItsCommit) {
+  const test::TemporaryFolder folder;
+  const fs::path target = folder.path() / "x.csv";
+  AtomicFile file(target);
+  file.write("all");
+
+  file.close();
+  const bool early = fs::exists(target);
+  AtomicFile moved = std::move(file);
+  moved.commit();
+
+  EXPECT_FALSE(early);
+  EXPECT_EQ(moved.target(), target);
+  EXPECT_EQ(read_file(target), "all");
+  EXPECT_EQ(files_in(folder.path()), 1);
+}
+
+TEST(AtomicFile, LeavesNothingWhenAbandonedAfterItWasClosedAndMoved) {
+  const test::TemporaryFolder folder;
+  {
+    AtomicFile file(folder.path() / "x.csv");
+    file.close();
+    const AtomicFile moved = std::move(file);
+    EXPECT_EQ(files_in(folder.path()), 1);
+  }
+
+  EXPECT_EQ(files_in(folder.path()), 0);
+}
+
 TEST(AtomicFile, ReplacesTheOldFile) {
   const test::TemporaryFolder folder;
   const fs::path target = folder.file("x.csv", "old and longer");

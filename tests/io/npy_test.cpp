@@ -9,6 +9,7 @@
 
 #include "moclean/core/error.hpp"
 #include "moclean/io/file.hpp"
+#include "moclean/io/read_write.hpp"
 
 #include "io/temporary_folder.hpp"
 #include "support/matrix.hpp"
@@ -122,7 +123,7 @@ TEST(Npy, GivesBackTheSameBits) {
   clip.samples(4, 2) = std::numeric_limits<double>::quiet_NaN();
   clip.samples(5, 2) = std::numeric_limits<double>::infinity();
 
-  write_npy(folder.path() / "x.npy", clip);
+  write_clip(folder.path() / "x.npy", clip);
   const Clip back = read(read_file(folder.path() / "x.npy"));
 
   EXPECT_TRUE(test::same_bits(back.samples, clip.samples));
@@ -134,7 +135,7 @@ TEST(Npy, WritesWhatNumpyWrites) {
   std::string header = dictionary(std::string(1, order) + "f8", false, "(2, 3)");
   header.resize(128 - 10 - 1, ' ');  // numpy aligns the samples to 64 bytes
 
-  write_npy(folder.path() / "x.npy", {two_by_three, {}, 0, ""});
+  write_clip(folder.path() / "x.npy", {two_by_three, {}, 0, ""});
 
   EXPECT_THAT(read_file(folder.path() / "x.npy"), StartsWith(npy(header, "")));
   EXPECT_EQ(std::filesystem::file_size(folder.path() / "x.npy"), 128 + 48);

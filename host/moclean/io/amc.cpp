@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "moclean/io/row_collector.hpp"
 #include "moclean/io/text_scanner.hpp"
 
 namespace moclean {
@@ -18,10 +19,12 @@ class AmcParser {
       : scanner_(text, file, {.comment = '#'}),
         bones_(skeleton.skeleton.bones),
         radians_per_angle_(skeleton.radians_per_angle),
-        seen_in_(bones_.size(), -1) {
+        seen_in_(bones_.size(), 0),
+        frames_(skeleton.skeleton.channels()) {
+    std::size_t width = 0;
     for (const Bone& bone : bones_) {
-      first_channel_.push_back(width_);
-      width_ += bone.channels.size();
+      first_channel_.push_back(width);
+      width += bone.channels.size();
       driven_ += !bone.channels.empty();
     }
   }
@@ -30,9 +33,7 @@ class AmcParser {
     header();
     do frame();
     while (!scanner_.at_end());
-    Matrix channels(frames_, static_cast<Index>(width_));
-    std::copy(values_.begin(), values_.end(), channels.data());
-    return channels;
+    return frames_.take();
   }
 
  private:
@@ -54,25 +55,24 @@ class AmcParser {
   void frame() {
     if (!at_frame_number()) scanner_.fail_expected("a frame number");
     const Index number = scanner_.count();
-    if (frames_ > 0 && number != number_ + 1)
+    if (frames_.count() > 0 && number != number_ + 1)
       scanner_.fail(fmt::format("expected frame {}, found {}", number_ + 1, number));
     scanner_.expect_line_end();
     number_ = number;
-    values_.resize(values_.size() + width_);
+    frame_ = frames_.add(scanner_.bytes_left());
     std::size_t driven = 0;
     while (!scanner_.at_end() && !at_frame_number()) driven += bone();
     if (driven < driven_) fail_missing();
-    ++frames_;
   }
 
   // One line `name value ...`; true if the bone has degrees of freedom.
   bool bone() {
     const std::size_t bone = find(scanner_.word());
-    if (std::exchange(seen_in_[bone], frames_) == frames_)
+    if (std::exchange(seen_in_[bone], frames_.count()) == frames_.count())
       scanner_.fail(
           fmt::format("frame {} gives bone {} twice", number_, excerpt(bones_[bone].name)));
     const std::vector<Channel>& channels = bones_[bone].channels;
-    double* const values = values_.data() + values_.size() - width_ + first_channel_[bone];
+    double* const values = frame_ + first_channel_[bone];
     // The file lists a bone's degrees of freedom in the reverse order of its channels.
     for (std::size_t c = channels.size(); c-- > 0;) {
       if (scanner_.at_line_end()) fail_count(bone, fmt::to_string(channels.size() - 1 - c));
@@ -103,7 +103,7 @@ class AmcParser {
 
   [[noreturn]] void fail_missing() {
     std::size_t bone = 0;
-    while (bones_[bone].channels.empty() || seen_in_[bone] == frames_) ++bone;
+    while (bones_[bone].channels.empty() || seen_in_[bone] == frames_.count()) ++bone;
     scanner_.fail(fmt::format("expected bone {} in frame {}, found the frame's end",
                               excerpt(bones_[bone].name), number_));
   }
@@ -112,14 +112,13 @@ class AmcParser {
   const std::vector<Bone>& bones_;
   double radians_per_angle_;
   std::vector<std::size_t> first_channel_;  // per bone
-  std::size_t width_ = 0;                   // channels of all bones
   std::size_t driven_ = 0;                  // bones that have channels
-  std::vector<Index> seen_in_;              // per bone: the last frame that had it
+  std::vector<Index> seen_in_;              // per bone: the last frame, from 1, that had it
   std::vector<std::size_t> follower_;       // per bone: the one that came after it last time
   std::size_t last_bone_ = 0;
-  std::vector<double> values_;  // [frames x width_]
-  Index frames_ = 0;
-  Index number_ = 0;  // of the frame being read, as the file counts
+  RowCollector frames_;
+  double* frame_ = nullptr;  // the row being read
+  Index number_ = 0;         // of the frame being read, as the file counts
 };
 
 }  // namespace

@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
-#include "moclean/io/file.hpp"
 #include "moclean/io/frame_rate.hpp"
+#include "moclean/io/row_collector.hpp"
 #include "moclean/io/text_scanner.hpp"
 
 namespace moclean {
@@ -117,10 +117,10 @@ class CsvParser {
     comments();
     header();
     if (scanner_.at_end()) scanner_.fail_expected("a line of samples");
-    do row();
+    RowCollector frames(static_cast<Index>(clip_.columns.size()));
+    do row(frames.add(scanner_.bytes_left()));
     while (!scanner_.at_end());
-    const auto width = static_cast<Index>(clip_.columns.size());
-    clip_.samples = Eigen::Map<const Matrix>(samples_.data(), frames_, width);
+    clip_.samples = frames.take();
     if (clip_.frame_rate == 0) clip_.frame_rate = rate_of(times_);
     return std::move(clip_);
   }
@@ -154,17 +154,16 @@ class CsvParser {
     clip_.columns = std::move(header.names);
   }
 
-  void row() {
+  void row(double* samples) {
     if (has_time_) time();
     for (std::size_t c = 0; c < clip_.columns.size(); ++c) {
       if (c > 0 || has_time_) separator(c);
-      samples_.push_back(sample());
+      samples[c] = sample();
     }
     if (!scanner_.at_line_end()) {
       if (scanner_.peek() != separator_) scanner_.fail_expected("the end of the line");
       scanner_.fail(fmt::format("expected {} columns, found more", width()));
     }
-    ++frames_;
   }
 
   void time() {
@@ -195,8 +194,6 @@ class CsvParser {
   char separator_ = ',';
   bool has_time_ = false;
   std::vector<double> times_;
-  std::vector<double> samples_;  // [frames x columns]
-  Index frames_ = 0;
 };
 
 std::string header_cell(const std::string& name) {
@@ -219,14 +216,11 @@ std::string head(const Clip& clip) {
   return text + "\n";
 }
 
-void append_number(std::string& text, double value) {
-  if (std::isnan(value)) {
-    text += "nan";
-    return;
-  }
-  char digits[32];  // the longest shortest text of a double has 24 characters
-  const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
-  text.append(digits, end);
+constexpr std::size_t longest_number = 24;  // characters of the longest shortest text of a double
+
+char* put_number(char* position, double value) {
+  if (std::isnan(value)) return std::copy_n("nan", 3, position);
+  return std::to_chars(position, position + longest_number, value).ptr;
 }
 
 }  // namespace
@@ -235,26 +229,29 @@ Clip parse_csv(std::string_view text, const std::filesystem::path& file) {
   return CsvParser(text, file).parse();
 }
 
-void write_csv(const std::filesystem::path& file, const Clip& clip) {
+void write_csv(AtomicFile& file, const Clip& clip) {
   for (const std::string& name : clip.columns)
     if (name.find_first_of("\r\n") != std::string::npos)
-      throw FileError(
-          file, "cannot be written: the column name " + excerpt(name) + " holds a line break");
-  AtomicFile out(file);
-  std::string text = head(clip);
-  constexpr std::size_t chunk = 1 << 20;
+      throw FileError(file.target(), "cannot be written: the column name " + excerpt(name) +
+                                         " holds a line break");
+  file.write(head(clip));
+  constexpr std::size_t chunk = 1 << 18;  // stays in the cache between being made and written
+  const Index columns = clip.samples.cols();
+  std::vector<char> text(chunk + static_cast<std::size_t>(columns) * (longest_number + 1) + 1);
+  char* end = text.data();
+  const auto flush = [&] {
+    file.write({text.data(), static_cast<std::size_t>(end - text.data())});
+    end = text.data();
+  };
   for (Index f = 0; f < clip.frames(); ++f) {
-    for (Index c = 0; c < clip.samples.cols(); ++c) {
-      if (c > 0) text += ',';
-      append_number(text, clip.samples(f, c));
+    for (Index c = 0; c < columns; ++c) {
+      if (c > 0) *end++ = ',';
+      end = put_number(end, clip.samples(f, c));
     }
-    text += '\n';
-    if (text.size() < chunk) continue;
-    out.write(text);
-    text.clear();
+    *end++ = '\n';
+    if (end - text.data() >= static_cast<std::ptrdiff_t>(chunk)) flush();
   }
-  out.write(text);
-  out.commit();
+  flush();
 }
 
 }  // namespace moclean

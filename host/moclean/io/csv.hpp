@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "moclean/io/file.hpp"
 #include "moclean/motion/clip.hpp"
 
 namespace moclean {
@@ -18,7 +19,7 @@ namespace moclean {
 Clip parse_csv(std::string_view text, const std::filesystem::path& file);
 
 /// Writes what parse_csv() reads back to the same bits: the shortest text for every number, `nan`
-/// for any NaN. Throws FileError; a failed write leaves no file.
-void write_csv(const std::filesystem::path& file, const Clip& clip);
+/// for any NaN. Throws FileError.
+void write_csv(AtomicFile& file, const Clip& clip);
 
 }  // namespace moclean

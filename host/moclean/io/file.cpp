@@ -2,6 +2,7 @@
 
 #include <random>
 #include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -51,6 +52,11 @@ AtomicFile::AtomicFile(fs::path target)
   if (!stream_) throw FileError(target_, "cannot be written: no new file in " + folder.string());
 }
 
+AtomicFile::AtomicFile(AtomicFile&& other) noexcept
+    : target_(std::move(other.target_)),
+      temporary_(std::exchange(other.temporary_, {})),
+      stream_(std::move(other.stream_)) {}
+
 AtomicFile::~AtomicFile() {
   if (temporary_.empty()) return;
   stream_.close();
@@ -63,9 +69,14 @@ void AtomicFile::write(std::string_view bytes) {
   if (!stream_) throw FileError(target_, "cannot be written: is the disk full?");
 }
 
-void AtomicFile::commit() {
+void AtomicFile::close() {
+  if (!stream_.is_open()) return;
   stream_.close();
   if (!stream_) throw FileError(target_, "cannot be written: is the disk full?");
+}
+
+void AtomicFile::commit() {
+  close();
   std::error_code error;
   fs::rename(temporary_, target_, error);
   if (error) throw FileError(target_, "cannot be written: " + error.message());

@@ -19,11 +19,16 @@ class AtomicFile {
   /// Throws FileError if the target's folder does not exist or cannot be written.
   explicit AtomicFile(std::filesystem::path target);
   ~AtomicFile();
-  AtomicFile(const AtomicFile&) = delete;
-  AtomicFile& operator=(const AtomicFile&) = delete;
+  AtomicFile(AtomicFile&& other) noexcept;
+  AtomicFile& operator=(AtomicFile&&) = delete;
+
+  const std::filesystem::path& target() const { return target_; }
 
   /// Appends bytes. Throws FileError, e.g. when the disk is full.
   void write(std::string_view bytes);
+
+  /// Ends the writing, so that the file waits for commit() without being open. Throws FileError.
+  void close();
 
   /// Puts the file in its place, over a file of that name. Throws FileError.
   void commit();

@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
-#include "moclean/io/file.hpp"
 #include "moclean/io/text_scanner.hpp"
 
 namespace moclean {
@@ -231,7 +230,7 @@ Clip parse_npy(std::string_view bytes, const std::filesystem::path& file) {
   return clip;
 }
 
-void write_npy(const std::filesystem::path& file, const Clip& clip) {
+void write_npy(AtomicFile& file, const Clip& clip) {
   std::string header =
       fmt::format("{{'descr': '{}f8', 'fortran_order': False, 'shape': ({}, {}), }}", native_order,
                   clip.samples.rows(), clip.samples.cols());
@@ -239,16 +238,14 @@ void write_npy(const std::filesystem::path& file, const Clip& clip) {
   while ((front + header.size() + 1) % alignment != 0) header += ' ';
   header += '\n';
 
-  AtomicFile out(file);
-  out.write(magic);
-  out.write({"\x01\x00", 2});
+  file.write(magic);
+  file.write({"\x01\x00", 2});
   const std::array<char, 2> length = {static_cast<char>(header.size() & 0xFF),
                                       static_cast<char>(header.size() >> 8)};
-  out.write({length.data(), length.size()});
-  out.write(header);
-  out.write({reinterpret_cast<const char*>(clip.samples.data()),
-             static_cast<std::size_t>(clip.samples.size()) * sizeof(double)});
-  out.commit();
+  file.write({length.data(), length.size()});
+  file.write(header);
+  file.write({reinterpret_cast<const char*>(clip.samples.data()),
+              static_cast<std::size_t>(clip.samples.size()) * sizeof(double)});
 }
 
 }  // namespace moclean

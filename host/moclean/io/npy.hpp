@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "moclean/io/file.hpp"
 #include "moclean/motion/clip.hpp"
 
 namespace moclean {
@@ -16,7 +17,7 @@ namespace moclean {
 Clip parse_npy(std::string_view bytes, const std::filesystem::path& file);
 
 /// Writes the samples as float64 [frames x columns] in C order, format 1.0; names, frame rate and
-/// unit have no place in it. Throws FileError; a failed write leaves no file.
-void write_npy(const std::filesystem::path& file, const Clip& clip);
+/// unit have no place in it. Throws FileError.
+void write_npy(AtomicFile& file, const Clip& clip);
 
 }  // namespace moclean

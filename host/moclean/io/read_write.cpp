@@ -8,7 +8,6 @@
 #include "moclean/io/bvh.hpp"
 #include "moclean/io/csv.hpp"
 #include "moclean/io/extension.hpp"
-#include "moclean/io/file.hpp"
 #include "moclean/io/find_skeleton.hpp"
 #include "moclean/io/npy.hpp"
 
@@ -39,10 +38,17 @@ Clip read_clip(const std::filesystem::path& file, const ReadOptions& options) {
 }
 
 void write_clip(const std::filesystem::path& file, const Clip& clip) {
+  write_temporary(file, clip).commit();
+}
+
+AtomicFile write_temporary(const std::filesystem::path& file, const Clip& clip) {
   const std::string kind = extension(file);
-  if (kind == ".csv") return write_csv(file, clip);
-  if (kind == ".npy") return write_npy(file, clip);
-  throw FileError(file, "cannot be written: expected a name ending in .csv or .npy");
+  if (kind != ".csv" && kind != ".npy")
+    throw FileError(file, "cannot be written: expected a name ending in .csv or .npy");
+  AtomicFile target(file);
+  kind == ".csv" ? write_csv(target, clip) : write_npy(target, clip);
+  target.close();
+  return target;
 }
 
 }  // namespace moclean

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "moclean/io/file.hpp"
 #include "moclean/motion/clip.hpp"
 
 namespace moclean {
@@ -22,5 +23,9 @@ Clip read_clip(const std::filesystem::path& file, const ReadOptions& options = {
 /// Writes a clip as .csv or .npy (float64, [frames x columns]); other extensions throw FileError.
 /// The file appears under its name only when it is complete (temporary file, then rename).
 void write_clip(const std::filesystem::path& file, const Clip& clip);
+
+/// As write_clip(), but leaves the complete file under its temporary name: commit() puts it in its
+/// place, the destructor removes it.
+AtomicFile write_temporary(const std::filesystem::path& file, const Clip& clip);
 
 }  // namespace moclean

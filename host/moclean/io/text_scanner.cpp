@@ -45,13 +45,13 @@ void TextScanner::skip_to_line_end() {
   while (position_ != end_ && kind(*position_) != Kind::line_end) ++position_;
 }
 
-bool TextScanner::at_line_end() {
-  while (position_ != end_ && kind(*position_) == Kind::blank) ++position_;
+// Both are called where at_word() is false: before a comment, a line end, or the end.
+bool TextScanner::at_end_of_line() {
   if (position_ != end_ && kind(*position_) == Kind::comment) skip_to_line_end();
-  return position_ == end_ || kind(*position_) == Kind::line_end;
+  return true;
 }
 
-bool TextScanner::at_end() {
+bool TextScanner::at_end_of_text() {
   while (at_line_end()) {
     if (position_ == end_) return true;
     next_line();
@@ -110,8 +110,7 @@ double TextScanner::number_or_nan() {
   return value;
 }
 
-double TextScanner::number() {
-  if (at_end()) fail_expected("a number");
+double TextScanner::finite_number() {
   const char* const before = position_;
   const double value = number_or_nan();
   if (std::isfinite(value)) return value;

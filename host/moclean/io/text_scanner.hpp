@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "moclean/core/matrix.hpp"
+#include "moclean/io/plain_number.hpp"
 
 namespace moclean {
 
@@ -15,7 +16,7 @@ std::string excerpt(std::string_view text);
 /// Walks through the words and numbers of a text and knows in which line it is.
 ///
 /// Works on the whole file in memory and copies nothing, so that reading runs at the speed of
-/// std::from_chars. A UTF-8 byte order mark is skipped; LF, CR LF and CR end a line.
+/// plain_number(). A UTF-8 byte order mark is skipped; LF, CR LF and CR end a line.
 class TextScanner {
  public:
   /// How a format spells its text.
@@ -33,10 +34,10 @@ class TextScanner {
   void add_marks(std::string_view characters) { assign(characters, Kind::mark); }
 
   /// Skips blanks and line ends; true if nothing else is left.
-  bool at_end();
+  bool at_end() { return !at_word() && at_end_of_text(); }
 
   /// Skips blanks; true if the line ends here (or the text does).
-  bool at_line_end();
+  bool at_line_end() { return !at_word() && at_end_of_line(); }
 
   /// Skips the rest of the line.
   void next_line();
@@ -58,7 +59,14 @@ class TextScanner {
   void expect(std::string_view keyword);
 
   /// The next word as a finite number. Throws FileError naming what came instead.
-  double number();
+  double number() {
+    if (at_end()) fail_expected("a number");
+    double value = 0;
+    const char* const after = plain_number(position_, end_, value);
+    if (!after || !is_word_end(after)) return finite_number();
+    position_ = after;
+    return value;
+  }
 
   /// The next word as a number, NaN and infinity included.
   double number_or_nan();
@@ -86,6 +94,15 @@ class TextScanner {
   }
   void assign(std::string_view characters, Kind kind);
   void skip_to_line_end();
+
+  // Skips blanks; true before a word or a mark: what nearly every call finds, so it is inline.
+  bool at_word() {
+    while (position_ != end_ && kind(*position_) == Kind::blank) ++position_;
+    return position_ != end_ && (kind(*position_) == Kind::text || kind(*position_) == Kind::mark);
+  }
+  bool at_end_of_line();
+  bool at_end_of_text();
+  double finite_number();
 
   std::filesystem::path file_;
   const char* position_;
