@@ -1,5 +1,7 @@
 # moclean_embed_kernels(TARGET STEM...): every kernels/STEM.cl becomes one generated .cpp of TARGET that
 # defines moclean::kernel_source::STEM (declared in host/moclean/device/kernel_source.hpp).
+set(moclean_included_kernels ${PROJECT_SOURCE_DIR}/kernels/tiles.cl
+    ${PROJECT_SOURCE_DIR}/kernels/state.cl)
 function(moclean_embed_kernels target)
   foreach(kernel ${ARGN})
     set(source ${PROJECT_SOURCE_DIR}/kernels/${kernel}.cl)
@@ -8,7 +10,7 @@ function(moclean_embed_kernels target)
       OUTPUT ${generated}
       COMMAND ${CMAKE_COMMAND} -D NAME=${kernel} -D SOURCE=${source} -D OUTPUT=${generated}
               -P ${PROJECT_SOURCE_DIR}/kernels/embed.cmake
-      DEPENDS ${source} ${PROJECT_SOURCE_DIR}/kernels/embed.cmake
+      DEPENDS ${source} ${moclean_included_kernels} ${PROJECT_SOURCE_DIR}/kernels/embed.cmake
       COMMENT "Embedding ${kernel}.cl"
       VERBATIM)
     target_sources(${target} PRIVATE ${generated})

@@ -8,15 +8,15 @@
 kernel void block_norms(global const segment_t* segments,  // [segments]
                         global const block_t* blocks,      // [blocks]
                         int block_count,
-                        global const real* data,         // [rows x pitch] stacked
-                        global real* partial_squares,    // [all blocks]
-                        global real* partial_largest) {  // [all blocks]
+                        global const real* data,           // [rows x pitch] stacked
+                        global double* partial_squares,    // [all blocks]
+                        global double* partial_largest) {  // [all blocks]
   const int item = get_global_id(0);
   if (item >= block_count) return;
   const block_t block = blocks[item];
   const segment_t s = segments[block.segment];
-  const int rows = block_end(block, s) - block_begin(block);
-  global const real* d = data + (s.first_row + block_begin(block)) * s.pitch;
+  const int rows = block_end(block, s) - block_begin(block, s);
+  global const real* d = data + (s.first_row + block_begin(block, s)) * s.pitch;
 
   vreal squares = 0, largest = 0;
   for (int i = 0; i < rows * s.pitch; i += VW) {
@@ -31,15 +31,15 @@ kernel void block_norms(global const segment_t* segments,  // [segments]
 kernel void segment_norms(global const segment_t* segments,  // [segments]
                           global const int* active,          // [active_count]
                           int active_count,
-                          global const real* partial_squares,  // [all blocks]
-                          global const real* partial_largest,  // [all blocks]
-                          global real* frobenius,              // [segments]
-                          global real* largest) {              // [segments]
+                          global const double* partial_squares,  // [all blocks]
+                          global const double* partial_largest,  // [all blocks]
+                          global double* frobenius,              // [segments]
+                          global double* largest) {              // [segments]
   const int item = get_global_id(0);
   if (item >= active_count) return;
   const segment_t s = segments[active[item]];
-  const int blocks = (s.rows + BLOCK_ROWS - 1) / BLOCK_ROWS;
-  real squares = 0, most = 0;
+  const int blocks = block_count_of(s);
+  double squares = 0, most = 0;
   for (int b = 0; b < blocks; ++b) {
     squares += partial_squares[s.first_block + b];
     most = fmax(most, partial_largest[s.first_block + b]);

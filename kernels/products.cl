@@ -6,83 +6,43 @@
 //   compose      C = PZ
 //   basis        Z', or Z for a wide segment: what to apply to express X in the rows of Z
 //
-// A work-item computes tiles of TILE_ROWS rows x TILE_VECTORS vectors in registers; tiles that
-// reach past the edge clamp their reads and skip their writes. Every sum runs over k in increasing
-// order. Launch: (tiles across, tiles down the largest order, active segments) for all but apply,
-// which takes one work-item per block of rows, and basis, one per row of a square matrix.
+// A work-item computes register tiles (kernels/tiles.cl).
+// Launch: (tiles across, tiles down the largest order, active segments) for all but apply, which
+// takes one work-item per block of rows, and basis, one per row of a square matrix.
 
-#ifndef TILE_ROWS
-#error "TILE_ROWS is not defined: rows of a register tile"
-#endif
-#ifndef TILE_VECTORS
-#error "TILE_VECTORS is not defined: vectors across a register tile"
-#endif
+#include "tiles.cl"
 
-#define TILE_COLUMNS (TILE_VECTORS * VW)
-
-// Start of vector v of a tile, pulled back inside the matrix for vectors past its edge.
-inline int clamped(int column, int v, int pitch) { return min(column + v * VW, pitch - VW); }
-
-inline void store_tile(vreal tile[TILE_ROWS][TILE_VECTORS], global real* target, int pitch, int row,
-                       int row_end, int column) {
-  for (int r = 0; r < TILE_ROWS; ++r)
-    for (int v = 0; v < TILE_VECTORS; ++v)
-      if (row + r < row_end && column + v * VW < pitch)
-        store(target + (row + r) * (size_t)pitch + column + v * VW, tile[r][v]);
+// One tile from `column` on, or vector by vector where they do not fill it.
+INLINE void outer_products(global const real* m, int pitch, int depth, global const real* weight,
+                           global real* target, int order, int row, int column) {
+  tile_t tile;
+  if (column + TILE_COLUMNS <= pitch) {
+    clear_tile(&tile, TILE_VECTORS);
+    add_outer_products(&tile, m, pitch, depth, weight, row, column, TILE_VECTORS);
+    store_tile(&tile, target, pitch, row, order, column, TILE_VECTORS);
+    return;
+  }
+  for (; column < pitch; column += VW) {
+    clear_tile(&tile, 1);
+    add_outer_products(&tile, m, pitch, depth, weight, row, column, 1);
+    store_tile(&tile, target, pitch, row, order, column, 1);
+  }
 }
 
-// target tile = sum_k weight_k left[k][row ..] right[k][column ..], k = 0 .. depth - 1; both
-// operands have `pitch`, and rows past `order` in the tile read the padding, which is zero.
-inline void tile_of_outer_products(global const real* m, int pitch, int depth,
-                                   global const real* weight, global real* target, int order,
-                                   int row, int column) {
-  vreal tile[TILE_ROWS][TILE_VECTORS];
-#pragma unroll
-  for (int r = 0; r < TILE_ROWS; ++r)
-#pragma unroll
-    for (int v = 0; v < TILE_VECTORS; ++v) tile[r][v] = 0;
-  for (int k = 0; k < depth; ++k) {
-    const real w = weight ? weight[k] : 1;
-    if (w == 0) continue;
-    global const real* mk = m + k * (size_t)pitch;
-    vreal right[TILE_VECTORS];
-#pragma unroll
-    for (int v = 0; v < TILE_VECTORS; ++v) right[v] = load(mk + clamped(column, v, pitch));
-#pragma unroll
-    for (int r = 0; r < TILE_ROWS; ++r) {
-      const vreal left = w * mk[min(row + r, pitch - 1)];
-#pragma unroll
-      for (int v = 0; v < TILE_VECTORS; ++v) tile[r][v] = fma(left, right[v], tile[r][v]);
-    }
+INLINE void product(global const real* left, int left_pitch, global const real* right, int pitch,
+                    int depth, global real* target, int row, int row_end, int column) {
+  tile_t tile;
+  if (column + TILE_COLUMNS <= pitch) {
+    clear_tile(&tile, TILE_VECTORS);
+    add_product(&tile, left, left_pitch, right, pitch, depth, row, row_end, column, TILE_VECTORS);
+    store_tile(&tile, target, pitch, row, row_end, column, TILE_VECTORS);
+    return;
   }
-  store_tile(tile, target, pitch, row, order, column);
-}
-
-// target tile = left[row ..][0 .. depth) * right[0 .. depth)[column ..].
-inline void tile_of_product(global const real* left, int left_pitch, global const real* right,
-                            int pitch, int depth, global real* target, int row, int row_end,
-                            int column) {
-  vreal tile[TILE_ROWS][TILE_VECTORS];
-  global const real* l[TILE_ROWS];
-#pragma unroll
-  for (int r = 0; r < TILE_ROWS; ++r) {
-    l[r] = left + min(row + r, row_end - 1) * (size_t)left_pitch;
-#pragma unroll
-    for (int v = 0; v < TILE_VECTORS; ++v) tile[r][v] = 0;
+  for (; column < pitch; column += VW) {
+    clear_tile(&tile, 1);
+    add_product(&tile, left, left_pitch, right, pitch, depth, row, row_end, column, 1);
+    store_tile(&tile, target, pitch, row, row_end, column, 1);
   }
-  for (int k = 0; k < depth; ++k) {
-    vreal b[TILE_VECTORS];
-#pragma unroll
-    for (int v = 0; v < TILE_VECTORS; ++v)
-      b[v] = load(right + k * (size_t)pitch + clamped(column, v, pitch));
-#pragma unroll
-    for (int r = 0; r < TILE_ROWS; ++r) {
-      const vreal a = l[r][k];
-#pragma unroll
-      for (int v = 0; v < TILE_VECTORS; ++v) tile[r][v] = fma(a, b[v], tile[r][v]);
-    }
-  }
-  store_tile(tile, target, pitch, row, row_end, column);
 }
 
 // G[i][j] = x_i . x_j for the tile's rows i and columns j >= i of a wide segment.
@@ -99,30 +59,34 @@ inline void tile_of_row_products(global const real* x, const segment_t s, global
 
 kernel void gram(global const segment_t* segments,  // [segments]
                  global const int* active,          // [active segments]
-                 global const real* x,              // [rows x pitch] stacked
-                 global real* g) {  // order x order matrices; upper triangle written
+                 int wide_only,
+                 global const real* x,  // [rows x pitch] stacked
+                 global real* g) {      // order x order matrices; upper triangle written
   const segment_t s = segments[active[get_global_id(2)]];
   const int column = get_global_id(0) * TILE_COLUMNS;
   const int row = get_global_id(1) * TILE_ROWS;
   if (row >= s.order || column >= s.order || column + TILE_COLUMNS <= row) return;
+  if (wide_only && !is_wide(s)) return;
   global const real* xs = x + s.first_row * s.pitch;
   if (is_wide(s))
     tile_of_row_products(xs, s, g + s.square, row, column);
   else
-    tile_of_outer_products(xs, s.pitch, s.rows, 0, g + s.square, s.order, row, column);
+    outer_products(xs, s.pitch, s.rows, 0, g + s.square, s.order, row, column);
 }
 
 kernel void reconstruct(global const segment_t* segments,  // [segments]
                         global const int* active,          // [active segments]
                         global const real* z,              // eigenvectors in rows, order x order
                         global const real* f,              // weights, `order` per segment
+                        global const int* counts,          // [segments]: terms; 0 leaves W as it is
                         global real* w) {                  // order x order matrices
-  const segment_t s = segments[active[get_global_id(2)]];
+  const int index = active[get_global_id(2)];
+  const segment_t s = segments[index];
   const int column = get_global_id(0) * TILE_COLUMNS;
   const int row = get_global_id(1) * TILE_ROWS;
-  if (row >= s.order || column >= s.order) return;
-  tile_of_outer_products(z + s.square, s.order_pitch, s.order, f + s.vector, w + s.square, s.order,
-                         row, column);
+  if (row >= s.order || column >= s.order || counts[index] == 0) return;
+  outer_products(z + s.square, s.order_pitch, counts[index], f + s.vector, w + s.square, s.order,
+                 row, column);
 }
 
 kernel void compose(global const segment_t* segments,  // [segments]
@@ -134,8 +98,8 @@ kernel void compose(global const segment_t* segments,  // [segments]
   const int column = get_global_id(0) * TILE_COLUMNS;
   const int row = get_global_id(1) * TILE_ROWS;
   if (row >= s.order || column >= s.order) return;
-  tile_of_product(p + s.square, s.order_pitch, z + s.square, s.order_pitch, s.order, c + s.square,
-                  row, s.order, column);
+  product(p + s.square, s.order_pitch, z + s.square, s.order_pitch, s.order, c + s.square, row,
+          s.order, column);
 }
 
 kernel void basis(global const segment_t* segments,  // [segments]
@@ -168,7 +132,7 @@ kernel void apply(global const segment_t* segments,  // [segments]
   global const real* right = is_wide(s) ? xs : w + s.square;
   const int left_pitch = is_wide(s) ? s.order_pitch : s.pitch;
   for (int column = 0; column < s.pitch; column += TILE_COLUMNS)
-    for (int row = block_begin(blocks[item]); row < end; row += TILE_ROWS)
-      tile_of_product(left, left_pitch, right, s.pitch, s.order, a + s.first_row * s.pitch, row,
-                      end, column);
+    for (int row = block_begin(blocks[item], s); row < end; row += TILE_ROWS)
+      product(left, left_pitch, right, s.pitch, s.order, a + s.first_row * s.pitch, row, end,
+              column);
 }

@@ -1,33 +1,17 @@
-// The element-wise and scalar steps of robust PCA by inexact augmented Lagrange multipliers, in the
-// notation of host/moclean/solve/reference/robust_pca.cpp:
+// The scalar steps of robust PCA by inexact augmented Lagrange multipliers, in the notation of
+// host/moclean/solve/reference/robust_pca.cpp:
 //
-//   start      Y = D / max(|D|_2, |D|_max / lambda)   mu = mu0_factor / |D|_2   first X (and E)
+//   start      mu = mu0_factor / |D|_2, Y = D / max(|D|_2, |D|_max / lambda)
 //   threshold  f_k = max(1 - (1/mu) / sigma_k, 0), rank = number of f_k > 0
-//   shrink     order ae: E = soft(D - A + Y/mu, lambda/mu)    Y+ = Y + mu (D - A - E)
-//                        X+ = D - E + Y+/mu+
-//              order ea: Y+ = Y + mu (D - A - E)     E+ = soft(D - A + Y+/mu+, lambda/mu+)
-//                        X+ = D - E+ + Y+/mu+        (E is kept: it belongs to A, E+ to the next A)
 //   advance    residual = |D - A - E|_F, mu = mu+, iteration count, convergence
 //
-// Launch: one work-item per block of rows (start, shrink) or per active segment (threshold,
-// advance).
+// As long as no entry of T reaches lambda/mu, E is zero and D, Y and X share their singular
+// vectors. Such a segment is called pure and takes no eigenproblem: with delta, xi, y the singular
+// values of D, X, Y,   xi = delta + y/mu   and   y+ = mu (xi - max(xi - 1/mu, 0)) = min(mu xi, 1).
+//
+// Launch: one work-item per active segment.
 
-typedef struct {
-  real mu;       // of the running iteration
-  real mu_next;  // of the one after it
-  real mu_max;
-  real lambda;
-  real dual_scale;  // Y_0 = D * dual_scale
-  real residual;    // |D - A - E|_F / |D|_F after the last iteration
-  int iterations;
-  int rank;
-  int converged;
-  int order_ea;  // 1: E is updated before A
-} state_t;       // mirrors moclean::opencl::SegmentState
-
-inline vreal soft(vreal t, real threshold) {
-  return t - clamp(t, (vreal)(-threshold), (vreal)(threshold));
-}
+#include "state.cl"
 
 kernel void start_state(global const segment_t* segments,  // [segments]
                         global const int* active,          // [active_count]
@@ -36,14 +20,14 @@ kernel void start_state(global const segment_t* segments,  // [segments]
                         global const real* largest,      // [segments]: max |D_ij|
                         real lambda,  // 0: lambda_scale / sqrt(max(rows, columns))
                         real lambda_scale, real mu0_factor, real mu_max_factor, real rho,
-                        int order_ea,
-                        global state_t* states) {  // [segments]
+                        int order_ea, int pure,
+                        global state_t* states,   // [segments]
+                        global real* dual,        // y, `order` per segment
+                        global int* decompose) {  // [segments]: 1 asks for the eigenproblem of X
   const int item = get_global_id(0);
   if (item >= active_count) return;
   const segment_t s = segments[active[item]];
-  real top = 0;
-  for (int k = 0; k < s.order; ++k) top = fmax(top, eigenvalues[s.vector + k]);
-  const real norm = sqrt(top);
+  const real norm = sqrt(fmax(eigenvalues[s.vector], (real)0));  // they decrease
   const real mu = mu0_factor / norm;
   const real weight = lambda > 0 ? lambda : lambda_scale / sqrt((real)max(s.rows, s.columns));
   global state_t* state = states + active[item];
@@ -56,108 +40,76 @@ kernel void start_state(global const segment_t* segments,  // [segments]
   state->iterations = 0;
   state->rank = 0;
   state->converged = 0;
+  state->finished = 0;
   state->order_ea = order_ea;
-}
-
-kernel void start(global const segment_t* segments,  // [segments]
-                  global const block_t* blocks,      // [block_count]
-                  int block_count,
-                  global const state_t* states,  // [segments]
-                  global const real* data,       // D [rows x pitch] stacked
-                  global real* y,                // Y
-                  global real* e,                // E
-                  global real* x) {              // X
-  const int item = get_global_id(0);
-  if (item >= block_count) return;
-  const segment_t s = segments[blocks[item].segment];
-  global const state_t* state = states + blocks[item].segment;
-  const size_t first = (s.first_row + block_begin(blocks[item])) * s.pitch;
-  const size_t last = (s.first_row + block_end(blocks[item], s)) * s.pitch;
-  const real inverse_mu = 1 / state->mu;
-  for (size_t i = first; i < last; i += VW) {
-    const vreal d = load(data + i);
-    const vreal dual = d * state->dual_scale;
-    const vreal t = fma(dual, (vreal)inverse_mu, d);
-    const vreal sparse = state->order_ea ? soft(t, state->lambda * inverse_mu) : (vreal)0;
-    store(y + i, dual);
-    store(e + i, sparse);
-    store(x + i, t - sparse);
-  }
+  state->pure = pure;
+  state->low_rank = 0;
+  decompose[active[item]] = !pure;
+  for (int k = 0; k < s.order; ++k)
+    dual[s.vector + k] = state->dual_scale * sqrt(fmax(eigenvalues[s.vector + k], (real)0));
 }
 
 kernel void threshold(global const segment_t* segments,  // [segments]
                       global const int* active,          // [active_count]
                       int active_count,
-                      global const real* eigenvalues,  // sigma^2, `order` per segment
+                      global const real* eigenvalues,  // of X'X, of D'D while pure
+                      int low_rank_permitted,          // whether V is there
                       global state_t* states,          // [segments]
-                      global real* f) {                // `order` per segment
+                      global real* dual,               // y while pure, `order` per segment
+                      global real* f,                  // `order` per segment
+                      global int* wanted,              // [segments]: eigenvectors needed
+                      global int* terms) {  // [segments]: of W; 0 where A = (XV) diag(f) V'
   const int item = get_global_id(0);
   if (item >= active_count) return;
   const segment_t s = segments[active[item]];
-  const real tau = 1 / states[active[item]].mu;
+  global state_t* state = states + active[item];
+  if (state->finished) return;
+  const real tau = 1 / state->mu;
   int rank = 0;
   for (int k = 0; k < s.order; ++k) {
-    const real sigma = sqrt(fmax(eigenvalues[s.vector + k], (real)0));
+    real sigma = sqrt(fmax(eigenvalues[s.vector + k], (real)0));
+    if (state->pure) {
+      sigma = fma(dual[s.vector + k], tau, sigma);
+      dual[s.vector + k] = fmin(state->mu * sigma, (real)1);
+    }
     rank += sigma > tau;
     f[s.vector + k] = sigma > tau ? 1 - tau / sigma : 0;
   }
-  states[active[item]].rank = rank;
-}
-
-kernel void shrink(global const segment_t* segments,  // [segments]
-                   global const block_t* blocks,      // [block_count]
-                   int block_count,
-                   global const state_t* states,    // [segments]
-                   global const real* data,         // D [rows x pitch] stacked
-                   global const real* a,            // A
-                   global real* y,                  // Y -> Y+
-                   global real* e,                  // E, order ae: new; order ea: of this iteration
-                   global real* x,                  // X -> X+
-                   global real* partial_squares) {  // [all blocks]: |D - A - E|_F^2
-  const int item = get_global_id(0);
-  if (item >= block_count) return;
-  const segment_t s = segments[blocks[item].segment];
-  global const state_t* state = states + blocks[item].segment;
-  const size_t first = (s.first_row + block_begin(blocks[item])) * s.pitch;
-  const size_t last = (s.first_row + block_end(blocks[item], s)) * s.pitch;
-  const real inverse_mu = 1 / state->mu, inverse_next = 1 / state->mu_next;
-  vreal squares = 0;
-  for (size_t i = first; i < last; i += VW) {
-    const vreal gap = load(data + i) - load(a + i);
-    const vreal dual = load(y + i);
-    const vreal sparse = state->order_ea
-                             ? fma(dual, (vreal)inverse_mu, load(data + i)) - load(x + i)
-                             : soft(fma(dual, (vreal)inverse_mu, gap), state->lambda * inverse_mu);
-    const vreal rest = gap - sparse;
-    const vreal dual_next = fma((vreal)state->mu, rest, dual);
-    const vreal sparse_next = state->order_ea ? soft(fma(dual_next, (vreal)inverse_next, gap),
-                                                     state->lambda * inverse_next)
-                                              : sparse;
-    squares = fma(rest, rest, squares);
-    store(y + i, dual_next);
-    store(e + i, sparse);
-    store(x + i, fma(dual_next, (vreal)inverse_next, load(data + i)) - sparse_next);
-  }
-  partial_squares[s.first_block + blocks[item].block] = lane_sum(squares);
+  state->rank = rank;
+  wanted[active[item]] = rank;
+  state->low_rank = low_rank_permitted && !is_wide(s) && 7 * rank < 3 * s.order;
+  terms[active[item]] = state->low_rank ? 0 : max(rank, 1);
 }
 
 kernel void advance(global const segment_t* segments,  // [segments]
                     global const int* active,          // [active_count]
                     int active_count,
                     global const real* partial_squares,  // [all blocks]
+                    global const int* partial_sparse,    // [all blocks]: whether E is not zero
                     global const real* frobenius,        // [segments]: |D|_F
-                    real rho, real tolerance,
-                    global state_t* states) {  // [segments]
+                    real rho, real tolerance, int max_iterations,
+                    int keep_pure,           // 0: no segment counts as pure from now on
+                    global state_t* states,  // [segments]
+                    global int* decompose,   // [segments]
+                    global int* wanted) {    // [segments]
   const int item = get_global_id(0);
   if (item >= active_count) return;
   const segment_t s = segments[active[item]];
   global state_t* state = states + active[item];
-  const int blocks = (s.rows + BLOCK_ROWS - 1) / BLOCK_ROWS;
+  if (state->finished) return;
   real squares = 0;
-  for (int b = 0; b < blocks; ++b) squares += partial_squares[s.first_block + b];
+  int sparse = 0;
+  for (int b = 0; b < block_count_of(s); ++b) {
+    squares += partial_squares[s.first_block + b];
+    sparse |= partial_sparse[s.first_block + b];
+  }
   state->residual = sqrt(squares) / frobenius[active[item]];
   state->converged = state->residual <= tolerance;
   state->iterations += 1;
   state->mu = state->mu_next;
   state->mu_next = fmin(rho * state->mu, state->mu_max);
+  state->pure = state->pure && !sparse && keep_pure;
+  state->finished = state->converged || state->iterations >= max_iterations;
+  decompose[active[item]] = !state->finished && !state->pure;
+  if (state->finished) wanted[active[item]] = 0;
 }

@@ -1,22 +1,21 @@
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 #include <memory>
 
 #include <fmt/format.h>
 
-#include "moclean/core/error.hpp"
-#include "moclean/io/file.hpp"
-#include "moclean/io/read_write.hpp"
 #include "moclean/solve/opencl/opencl_backend.hpp"
 #include "moclean/solve/reference/reference_backend.hpp"
 
+#include "cli/backend_report.hpp"
 #include "cli/commands.hpp"
 #include "cli/denoise_options.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/json_record.hpp"
 #include "cli/outputs.hpp"
-#include "cli/progress_line.hpp"
+#include "cli/pipeline.hpp"
+#include "cli/process_memory.hpp"
+#include "cli/tuning_cache.hpp"
 
 namespace moclean::cli {
 namespace {
@@ -26,92 +25,46 @@ namespace fs = std::filesystem;
 struct OpenedBackend {
   std::unique_ptr<Device> device;  // has to outlive the backend
   std::unique_ptr<Backend> backend;
+  BackendReport report;
 };
 
+// What is kept for the device; a file that cannot be used is worth a warning.
+std::optional<Tuning> kept_tuning(const fs::path& file, const DeviceInfo& device) {
+  CachedTuning cached = read_tuning(file, device);
+  if (!cached.problem.empty())
+    fmt::print(stderr, "moclean: ignoring the kept tuning: {}; see moclean tune\n", cached.problem);
+  return cached.tuning;
+}
+
 OpenedBackend open_backend(const DenoiseOptions& options) {
-  if (options.backend == "reference")
-    return {nullptr, std::make_unique<ReferenceBackend>(options.jobs)};
-  auto device = std::make_unique<Device>(options.device);
-  auto backend =
-      std::make_unique<OpenClBackend>(*device, OpenClOptions{.products = options.products});
-  return {std::move(device), std::move(backend)};
-}
-
-std::vector<Denoised> solve(const DenoiseOptions& options, Backend& backend,
-                            const std::vector<Clip>& clips, const Interrupt& interrupt,
-                            const char* task) {
-  ProgressLine line(task, !options.quiet);
-  const Monitor monitor{.report = [&](const Progress& progress) { line.show(progress); },
-                        .stop = interrupt.token()};
-  auto results =
-      LowRankDenoiser(options.segmentation, options.method, backend).denoise(clips, monitor);
-  interrupt.check();
-  return results;
-}
-
-std::vector<TakeReport> reports_of(const std::vector<fs::path>& files, const Takes& takes,
-                                   const std::vector<Denoised>& results) {
-  std::vector<TakeReport> reports;
-  for (std::size_t i = 0; i < files.size(); ++i)
-    reports.push_back({.file = files[i],
-                       .frames = results[i].clip.frames(),
-                       .columns = results[i].clip.samples.cols(),
-                       .read_seconds = takes.read_seconds[i],
-                       .solve_seconds = results[i].solve_seconds,
-                       .write_seconds = 0,
-                       .segments = results[i].segments,
-                       .verification = {}});
-  return reports;
-}
-
-std::string agreement_line(const TakeReport& take) {
-  const auto& [agreement, largest] = *take.verification;
-  return fmt::format(
-      "{}: difference to the reference: motion {:.1e} (bound {:.0e}), outliers {:.1e} (bound "
-      "{:.0e}), largest {:.1e}; iterations {}, ranks {}",
-      take.file.string(), agreement.low_rank, low_rank_agreement_bound, agreement.sparse,
-      sparse_agreement_bound, largest, agreement.same_iterations ? "equal" : "differ",
-      agreement.same_rank ? "equal" : "differ");
-}
-
-// Solves everything again with the reference and compares. Throws Error if a take differs.
-void verify(const DenoiseOptions& options, const std::vector<Clip>& clips,
-            const std::vector<Denoised>& results, const Interrupt& interrupt,
-            std::vector<TakeReport>& reports) {
-  ReferenceBackend reference(options.jobs);
-  const auto expected = solve(options, reference, clips, interrupt, "verifying");
-  std::string failures;
-  for (std::size_t i = 0; i < clips.size(); ++i) {
-    const Matrix difference = results[i].clip.samples - expected[i].clip.samples;
-    reports[i].verification = {agreement(results[i], expected[i]),
-                               difference.cwiseAbs().maxCoeff()};
-    if (!within(reports[i].verification->agreement)) failures += "\n" + agreement_line(reports[i]);
+  if (options.backend == "reference") {
+    auto reference = std::make_unique<ReferenceBackend>(options.jobs);
+    const std::string name = reference->name();
+    return {nullptr, std::move(reference), {.name = name}};
   }
-  if (!failures.empty())
-    throw Error("not verified, nothing was written; the device and the reference differ:" +
-                failures);
+  auto device =
+      std::make_unique<Device>(options.device, options.profile ? Profiling::on : Profiling::off);
+  const fs::path file = options.use_tuning ? tuning_file(device->info()) : fs::path();
+  const std::optional<Tuning> kept = kept_tuning(file, device->info());
+  auto backend = std::make_unique<OpenClBackend>(
+      *device, OpenClOptions{.products = options.products,
+                             .precision = options.precision,
+                             .memory_limit = std::min(device->info().usable_memory(),
+                                                      device_share(options.memory_limit)),
+                             .tuning = kept});
+  BackendReport report{.name = backend->name(),
+                       .tuning = backend->tuning(),
+                       .tuning_file = kept ? file : fs::path()};
+  return {std::move(device), std::move(backend), std::move(report)};
 }
 
-void write(const OutputPlan& plan, const std::vector<Denoised>& results,
-           std::vector<TakeReport>& reports) {
-  for (const fs::path& folder : plan.folders) fs::create_directories(folder);
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    const auto begin = std::chrono::steady_clock::now();
-    write_clip(plan.clean[i], results[i].clip);
-    if (!plan.outliers.empty()) write_clip(plan.outliers[i], results[i].outliers);
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
-    reports[i].write_seconds = seconds.count();
-  }
-}
-
-void write_json(const fs::path& file, const std::string& text) {
-  if (file == "-") {
-    fmt::print("{}", text);
-    return;
-  }
-  AtomicFile target(file);
-  target.write(text);
-  target.commit();
+ProfileReport profile_of(const Device& device, const DenoiseOptions& options,
+                         double solve_seconds) {
+  auto kernels = device.profile()->kernels();  // before those that measure the peak
+  return {.kernels = std::move(kernels),
+          .peak = measure_peak(device),
+          .solve_seconds = solve_seconds,
+          .precision = options.precision};
 }
 
 // `7`, or `5-9` if the segments differ.
@@ -133,6 +86,11 @@ void print_summary(const TakeReport& take, const fs::path& result) {
   if (take.verification) fmt::print("{}\n", agreement_line(take));
 }
 
+void print_report(const RunReport& run, const OutputPlan& plan, const BackendReport& backend) {
+  for (std::size_t i = 0; i < run.takes.size(); ++i) print_summary(run.takes[i], plan.clean[i]);
+  if (backend.profile) fmt::print("\n{}", profile_table(*backend.profile));
+}
+
 ExitCode warn_if_not_converged(const std::vector<TakeReport>& takes) {
   ExitCode code = ExitCode::done;
   for (const TakeReport& take : takes) {
@@ -149,25 +107,23 @@ ExitCode warn_if_not_converged(const std::vector<TakeReport>& takes) {
 }
 
 ExitCode run(DenoiseOptions options) {
+  if (options.memory_limit != 0) return_freed_memory();  // whoever sets a limit means it
   complete(options);
   const Interrupt interrupt;  // before the threads of the OpenCL driver
-  const std::vector<fs::path> files = expand_folders(options.inputs);
-  const OutputPlan plan =
-      plan_outputs({options.inputs, files, options.output, options.outliers, options.format});
+  Job job{.options = options, .files = expand_folders(options.inputs), .plan = {}};
+  job.plan =
+      plan_outputs({options.inputs, job.files, options.output, options.outliers, options.format});
   if (!options.json.empty() && options.json != "-") require_writable(options.json);
 
-  const OpenedBackend opened = open_backend(options);
-  const Takes takes = read_takes(files, options.reading, options.jobs, interrupt.token());
-  const auto results = solve(options, *opened.backend, takes.clips, interrupt, "solving");
-  auto reports = reports_of(files, takes, results);
-  if (options.verify) verify(options, takes.clips, results, interrupt, reports);
+  OpenedBackend opened = open_backend(options);
+  job.compute_units = opened.device ? opened.device->info().compute_units : options.jobs;
+  const RunReport report = run_pipeline(job, *opened.backend, interrupt.token());
 
-  write(plan, results, reports);
-  if (!options.json.empty())
-    write_json(options.json, to_text(json_record(options, opened.backend->name(), reports)));
-  if (options.reports())
-    for (std::size_t i = 0; i < reports.size(); ++i) print_summary(reports[i], plan.clean[i]);
-  return warn_if_not_converged(reports);
+  if (options.profile)
+    opened.report.profile = profile_of(*opened.device, options, report.seconds.solve);
+  if (!options.json.empty()) write_json(options.json, json_record(options, opened.report, report));
+  if (options.reports()) print_report(report, job.plan, opened.report);
+  return warn_if_not_converged(report.takes);
 }
 
 }  // namespace
@@ -175,11 +131,13 @@ ExitCode run(DenoiseOptions options) {
 void add_denoise(CLI::App& program, Action& action) {
   CLI::App& command = *program.add_subcommand("denoise", "Clean recordings");
   command.footer(
-      "Several recordings are solved together and give the same files as single calls. If one\n"
-      "cannot be read, nothing is written for any. Ctrl-C stops before anything is written.\n"
+      "Several recordings are solved together and give the same files as single calls. The next\n"
+      "ones are read and the last ones written while the device works. If one cannot be read,\n"
+      "nothing is written for any; Ctrl-C leaves nothing: results wait under temporary names.\n"
       "Exit codes: 0 done, 1 failed input or device (or --verify), 2 usage, 3 written, but a\n"
       "segment did not converge, 130 interrupted.\n\n"
-      "The bounds of --verify hold for the default tolerance and are the same for any other.\n\n"
+      "The bounds of --verify hold for the default tolerance and are the same for any other;\n"
+      "--precision mixed has its own.\n\n"
       "Example:\n"
       "  moclean denoise walk.bvh -o clean.csv --segment-length 200 --verify\n"
       "  moclean denoise takes/ -o cleaned/ --json cleaned.json");

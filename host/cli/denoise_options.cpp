@@ -4,6 +4,10 @@
 #include <thread>
 
 #include "moclean/core/error.hpp"
+#include "moclean/solve/opencl/opencl_backend.hpp"
+
+#include "cli/byte_size.hpp"
+#include "cli/process_memory.hpp"
 
 namespace moclean::cli {
 namespace {
@@ -79,8 +83,8 @@ void add_method(CLI::App& command, DenoiseOptions& options) {
                   ->capture_default_str()
                   ->type_name("X");
   auto* tolerance =
-      command.add_option("--tolerance", method.tolerance, "Relative residual to stop at")
-          ->capture_default_str()
+      command.add_option("--tolerance", options.tolerance, "Relative residual to stop at")
+          ->default_str("1e-07, 1e-06 if mixed")
           ->type_name("X");
   auto* iterations =
       command.add_option("--max-iterations", method.max_iterations, "Iterations to stop at")
@@ -111,21 +115,57 @@ void add_device(CLI::App& command, DenoiseOptions& options) {
       ->envname("MOCLEAN_DEVICE")
       ->type_name("SEL")
       ->group(device_group);
+}
+
+void add_arithmetic(CLI::App& command, DenoiseOptions& options) {
   command
       .add_option_function<std::string>(
           "--products",
           [&](const std::string& text) { options.products = parse_product_path(text); },
-          "Matrix products on the OpenCL device: our kernels, or CLBlast")
+          "Matrix products on the OpenCL device: our kernels, or CLBlast; default: those of the "
+          "tuning, else own")
       ->check(CLI::IsMember({"own", "clblast"}))
-      ->default_str("own")
       ->type_name("PATH")
       ->group(device_group);
+  command
+      .add_option_function<std::string>(
+          "--precision",
+          [&](const std::string& text) { options.precision = parse_precision(text); },
+          "Double precision throughout, or single for the frames and double for the eigenproblems")
+      ->check(CLI::IsMember({"f64", "mixed"}))
+      ->default_str("f64")
+      ->type_name("PRECISION")
+      ->group(device_group);
+  command
+      .add_flag_callback(
+          "--no-tuning", [&] { options.use_tuning = false; },
+          "Do not use what moclean tune has found for the device")
+      ->group(device_group);
+}
+
+void add_resources(CLI::App& command, DenoiseOptions& options) {
   options.jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   command
       .add_option("--jobs", options.jobs,
-                  "Threads for reading files and for the reference; default: all of the machine")
+                  "Threads for reading, for writing, and for the reference; default: all of the "
+                  "machine")
       ->check(CLI::PositiveNumber)
       ->type_name("N")
+      ->group(device_group);
+  command
+      .add_option_function<std::string>(
+          "--memory-limit",
+          [&](const std::string& text) {
+            options.memory_limit = parse_byte_size("--memory-limit", text);
+          },
+          "Memory for recordings and for the batches of the device, which get a quarter of it: a "
+          "number with K, M, G or T; default: a quarter of the machine's")
+      ->type_name("SIZE")
+      ->group(device_group);
+  command
+      .add_flag_callback(
+          "--no-overlap", [&] { options.overlap = false; },
+          "Read all, then solve all, then write all, in any amount of memory: to measure the three")
       ->group(device_group);
 }
 
@@ -137,8 +177,21 @@ void add_report(CLI::App& command, DenoiseOptions& options) {
       .add_flag("--verify", options.verify,
                 "Solve with the reference, too; write nothing and exit 1 if they differ")
       ->group(report_group);
+  command
+      .add_flag("--profile", options.profile,
+                "Measure every kernel of the OpenCL device: calls, time, rates, share of the peak")
+      ->group(report_group);
   command.add_flag("--quiet", options.quiet, "Print nothing but warnings and errors")
       ->group(report_group);
+}
+
+void require_opencl(const DenoiseOptions& options) {
+  if (options.backend == "opencl") return;
+  if (options.verify)
+    throw ArgumentError("--verify compares with the reference and needs --backend opencl");
+  if (options.profile) throw ArgumentError("--profile needs --backend opencl");
+  if (options.precision == Precision::mixed)
+    throw ArgumentError("--precision mixed needs --backend opencl; the reference is double");
 }
 
 Segmentation segmentation_of(const DenoiseOptions& options) {
@@ -160,13 +213,22 @@ void add_denoise_options(CLI::App& command, DenoiseOptions& options) {
   add_segmentation(command, options);
   add_method(command, options);
   add_device(command, options);
+  add_arithmetic(command, options);
+  add_resources(command, options);
   add_report(command, options);
 }
 
 void complete(DenoiseOptions& options) {
   options.segmentation = segmentation_of(options);
-  if (options.verify && options.backend == "reference")
-    throw ArgumentError("--verify compares with the reference and needs --backend opencl");
+  require_opencl(options);
+  const bool mixed = options.precision == Precision::mixed;
+  if (mixed && options.products == ProductPath::clblast)
+    throw ArgumentError("--precision mixed works with our own products only, not with clblast");
+  options.method.tolerance =
+      options.tolerance.value_or(mixed ? mixed_tolerance : RobustPca{}.tolerance);
+  if (mixed && options.method.tolerance < mixed_tolerance)
+    throw ArgumentError("--precision mixed reaches a tolerance of 1e-06 at best");
+  if (options.memory_limit == 0) options.memory_limit = physical_memory() / 4;
   check(options.method);
 }
 

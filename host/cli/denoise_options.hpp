@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -8,7 +9,8 @@
 #include <CLI/CLI.hpp>
 
 #include "moclean/denoise/low_rank.hpp"
-#include "moclean/linalg/products.hpp"
+#include "moclean/linalg/precision.hpp"
+#include "moclean/linalg/tuning.hpp"
 
 #include "cli/inputs.hpp"
 
@@ -25,16 +27,22 @@ struct DenoiseOptions {
   std::string method_name = "slra";  ///< "slra" | "rpca"
   std::optional<Index> segment_length;
   std::optional<Index> segments;
-  Segmentation segmentation;  ///< follows from the three above; set by complete()
-  RobustPca method;
+  Segmentation segmentation;        ///< follows from the three above; set by complete()
+  std::optional<double> tolerance;  ///< default: what the precision reaches
+  RobustPca method;                 ///< tolerance: set by complete()
 
   std::string backend = "opencl";  ///< "opencl" | "reference"
   std::string device;
-  ProductPath products = ProductPath::own;
+  std::optional<ProductPath> products;  ///< default: those of the tuning
+  Precision precision = Precision::f64;
+  bool use_tuning = true;  ///< what `moclean tune` has found
   int jobs = 1;
+  std::uint64_t memory_limit = 0;  ///< bytes; set by complete() where it is not given
+  bool overlap = true;             ///< of reading, solving and writing
 
   std::filesystem::path json;  ///< "-": standard output; empty: none
   bool verify = false;
+  bool profile = false;
   bool quiet = false;
 
   bool reports() const { return !quiet && json != "-"; }  ///< whether standard output is for people

@@ -2,12 +2,8 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <charconv>
-#include <chrono>
 #include <cmath>
-#include <future>
-#include <thread>
 
 #include <fmt/format.h>
 
@@ -118,33 +114,10 @@ std::vector<fs::path> expand_folders(const std::vector<fs::path>& inputs) {
   return files;
 }
 
-Takes read_takes(const std::vector<fs::path>& files, const InputOptions& options, int jobs,
-                 std::stop_token stop) {
-  Takes takes{std::vector<Clip>(files.size()), std::vector<double>(files.size())};
-  const auto read = [&](std::size_t i) {
-    if (stop.stop_requested()) throw Cancelled();
-    const auto begin = std::chrono::steady_clock::now();
-    takes.clips[i] = read_input(files[i], options);
-    require_solvable(takes.clips[i], options.frames, files[i]);
-    const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
-    takes.read_seconds[i] = seconds.count();
-  };
-
-  std::vector<std::packaged_task<void()>> tasks;
-  for (std::size_t i = 0; i < files.size(); ++i) tasks.emplace_back([&read, i] { read(i); });
-  std::atomic<std::size_t> next = 0;
-  {
-    const auto work = [&] {
-      for (std::size_t i = next++; i < tasks.size(); i = next++) tasks[i]();
-    };
-    std::vector<std::jthread> others;
-    for (std::size_t t = 1; t < std::min<std::size_t>(static_cast<std::size_t>(jobs), tasks.size());
-         ++t)
-      others.emplace_back(work);
-    work();
-  }
-  for (auto& task : tasks) task.get_future().get();  // rethrows what reading a file threw
-  return takes;
+Clip read_solvable(const fs::path& file, const InputOptions& options) {
+  Clip clip = read_input(file, options);
+  require_solvable(clip, options.frames, file);
+  return clip;
 }
 
 }  // namespace moclean::cli

@@ -2,7 +2,6 @@
 
 #include <filesystem>
 #include <optional>
-#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -42,15 +41,8 @@ Clip read_input(const std::filesystem::path& file, const InputOptions& options);
 /// holds no recording.
 std::vector<std::filesystem::path> expand_folders(const std::vector<std::filesystem::path>& inputs);
 
-/// Several recordings, in the order of their files.
-struct Takes {
-  std::vector<Clip> clips;
-  std::vector<double> read_seconds;  ///< per clip
-};
-
-/// Reads files on up to `jobs` threads and requires every selected sample to be a number of
-/// sensible size. If several files are wrong, reports the first of them. Throws Cancelled.
-Takes read_takes(const std::vector<std::filesystem::path>& files, const InputOptions& options,
-                 int jobs, std::stop_token stop);
+/// As read_input(), and throws FileError naming frame and column of a sample that is missing or too
+/// large for the solvers.
+Clip read_solvable(const std::filesystem::path& file, const InputOptions& options);
 
 }  // namespace moclean::cli

@@ -3,8 +3,6 @@
 #include <chrono>
 #include <ctime>
 
-#include "moclean/core/error.hpp"
-
 namespace moclean::cli {
 namespace {
 
@@ -30,10 +28,6 @@ Interrupt::~Interrupt() {
   watcher_.request_stop();
   watcher_.join();
   pthread_sigmask(SIG_SETMASK, &mask_before_, nullptr);
-}
-
-void Interrupt::check() const {
-  if (source_.stop_requested()) throw Cancelled();
 }
 
 void Interrupt::watch(std::stop_token done) {

@@ -21,9 +21,6 @@ class Interrupt {
 
   std::stop_token token() const { return source_.get_token(); }
 
-  /// Throws Cancelled if a signal came.
-  void check() const;
-
  private:
   void watch(std::stop_token done);
 

@@ -1,5 +1,14 @@
 #include "cli/json_record.hpp"
 
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "moclean/io/file.hpp"
+
+#include "cli/backend_report.hpp"
+#include "cli/tuning_cache.hpp"
+
 namespace moclean::cli {
 namespace {
 
@@ -42,8 +51,8 @@ Json agreement_record(const Verification& verification) {
   record["low_rank"] = verification.agreement.low_rank;
   record["sparse"] = verification.agreement.sparse;
   record["largest_difference"] = verification.largest_difference;
-  record["same_iterations"] = verification.agreement.same_iterations;
-  record["same_rank"] = verification.agreement.same_rank;
+  record["same_iterations"] = verification.agreement.iterations_apart == 0;
+  record["same_rank"] = verification.agreement.ranks_apart == 0;
   return record;
 }
 
@@ -65,23 +74,41 @@ Json take_record(const TakeReport& take) {
 
 }  // namespace
 
-double TakeReport::frames_per_second() const {
-  return solve_seconds > 0 ? static_cast<double>(frames) / solve_seconds : 0;
-}
-
-Json json_record(const DenoiseOptions& options, const std::string& device,
-                 const std::vector<TakeReport>& takes) {
+Json json_record(const DenoiseOptions& options, const BackendReport& backend,
+                 const RunReport& run) {
   Json record;
   record["version"] = MOCLEAN_VERSION;
-  record["device"] = device;
+  record["device"] = backend.name;
+  record["precision"] = to_string(options.precision);
+  if (backend.tuning) record["tuning"] = tuning_record(*backend.tuning);
+  if (backend.tuning)
+    record["tuning"]["file"] =
+        backend.tuning_file.empty() ? Json(nullptr) : Json(backend.tuning_file.string());
   record["method"] = method_record(options);
+  record["seconds"] = {{"read", run.seconds.read},
+                       {"solve", run.seconds.solve},
+                       {"write", run.seconds.write},
+                       {"total", run.seconds.total}};
+  record["memory"] = {{"limit", options.memory_limit}, {"peak", run.peak_memory}};
+  record["groups"] = run.groups;
   record["inputs"] = Json::array();
-  for (const TakeReport& take : takes) record["inputs"].push_back(take_record(take));
+  for (const TakeReport& take : run.takes) record["inputs"].push_back(take_record(take));
+  if (backend.profile) record["profile"] = profile_record(*backend.profile);
   return record;
 }
 
 std::string to_text(const Json& json) {
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void write_json(const std::filesystem::path& file, const Json& json) {
+  if (file == "-") {
+    fmt::print("{}", to_text(json));
+    return;
+  }
+  AtomicFile target(file);
+  target.write(to_text(json));
+  target.commit();
 }
 
 }  // namespace moclean::cli

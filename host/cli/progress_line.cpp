@@ -13,9 +13,11 @@ constexpr const char* clear_line = "\r\033[K";
 
 }  // namespace
 
-std::string progress_text(const std::string& task, const Progress& progress, double seconds) {
+std::string progress_text(const std::string& task, const Progress& progress, double seconds,
+                          ProgressTotal total) {
   if (progress.total == 0) return task;
-  std::string text = fmt::format("{}: {} of {} segments", task, progress.finished, progress.total);
+  std::string text = fmt::format("{}: {} of {}{} segments", task, progress.finished,
+                                 total == ProgressTotal::estimated ? "about " : "", progress.total);
   if (progress.finished == 0 || seconds <= 0) return text;
   const double rate = static_cast<double>(progress.finished) / seconds;
   const double left = static_cast<double>(progress.total - progress.finished) / rate;
@@ -31,12 +33,12 @@ ProgressLine::~ProgressLine() {
   if (visible_) std::fputs(clear_line, stderr);
 }
 
-void ProgressLine::show(const Progress& progress) {
+void ProgressLine::show(const Progress& progress, ProgressTotal total) {
   const Clock::time_point now = Clock::now();
   if (!visible_ || now - shown_ < std::chrono::milliseconds(100)) return;
   shown_ = now;
   const std::chrono::duration<double> seconds = now - begin_;
-  std::fputs((clear_line + progress_text(task_, progress, seconds.count())).c_str(), stderr);
+  std::fputs((clear_line + progress_text(task_, progress, seconds.count(), total)).c_str(), stderr);
 }
 
 }  // namespace moclean::cli

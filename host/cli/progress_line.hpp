@@ -7,6 +7,9 @@
 
 namespace moclean::cli {
 
+/// Whether the number of segments to come is known, or estimated from the size of files not read.
+enum class ProgressTotal { exact, estimated };
+
 /// One line on standard error that says how far a computation is; nothing if standard error is not
 /// a terminal. The destructor clears it.
 class ProgressLine {
@@ -18,7 +21,7 @@ class ProgressLine {
   ProgressLine& operator=(const ProgressLine&) = delete;
 
   /// Rewrites the line, at most ten times a second.
-  void show(const Progress& progress);
+  void show(const Progress& progress, ProgressTotal total = ProgressTotal::exact);
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -30,7 +33,8 @@ class ProgressLine {
 };
 
 /// The text of the line, for instance `solving: 12 of 140 segments, 35.0 segments/s, 4 s left`.
-/// Rate and time left are absent until a segment has finished.
-std::string progress_text(const std::string& task, const Progress& progress, double seconds);
+/// Rate and time left are absent until a segment has finished; an estimated total is `about 140`.
+std::string progress_text(const std::string& task, const Progress& progress, double seconds,
+                          ProgressTotal total = ProgressTotal::exact);
 
 }  // namespace moclean::cli

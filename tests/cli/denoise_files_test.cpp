@@ -46,6 +46,36 @@ TEST(DenoiseFiles, FolderOfTakesGivesTheFilesOfSingleCalls) {
   }
 }
 
+TEST(DenoiseFiles, GroupingDoesNotChangeTheResults) {
+  const TemporaryFolder folder;
+  for (int i = 0; i < 8; ++i) {
+    folder.write("takes/a" + std::to_string(i) + ".npy",
+                 synthetic_walk(90 + 10 * i, static_cast<std::uint64_t>(i + 1)));
+    folder.write("takes/b" + std::to_string(i) + ".csv", narrow_walk(40 + i));
+  }
+  const auto denoise = [&](const std::string& output, std::vector<std::string> options) {
+    options.insert(options.begin(), {"denoise", folder / "takes", "-o", folder / output, "--json",
+                                     "-", "--segment-length", "40"});
+    return run(options);
+  };
+
+  const Outcome together = denoise("together", {});
+  const Outcome few = denoise("few", {"--memory-limit", "8M"});
+  const Outcome apart = denoise("apart", {"--memory-limit", "2M"});
+  const Outcome in_turn = denoise("in_turn", {"--no-overlap"});
+
+  EXPECT_EQ(together.json()["groups"], 1);
+  EXPECT_GE(few.json()["groups"], 3);
+  EXPECT_GE(apart.json()["groups"], 6);
+  EXPECT_EQ(in_turn.exit_code, 0) << in_turn.err;
+  for (const std::string other : {"few/", "apart/", "in_turn/"})
+    for (int i = 0; i < 8; ++i)
+      for (const std::string& name :
+           {"a" + std::to_string(i) + ".npy", "b" + std::to_string(i) + ".csv"})
+        EXPECT_TRUE(content(folder / (other + name)) == content(folder / ("together/" + name)))
+            << other << name;
+}
+
 TEST(DenoiseFiles, ResultDoesNotDependOnJobs) {
   const TemporaryFolder folder;
   const std::string walk = folder.write("walk.npy", synthetic_walk(160));

@@ -63,7 +63,13 @@ TEST_F(Denoise, RecordHoldsTheWholeRun) {
 
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json record = outcome.json();
-  EXPECT_THAT(keys(record), UnorderedElementsAre("version", "device", "method", "inputs"));
+  EXPECT_THAT(keys(record),
+              UnorderedElementsAre("version", "device", "precision", "tuning", "method", "seconds",
+                                   "memory", "groups", "inputs"));
+  EXPECT_EQ(record["precision"], "f64");
+  EXPECT_THAT(keys(record["tuning"]),
+              UnorderedElementsAre("tile_rows", "tile_vectors", "sweep_rows", "panel", "products",
+                                   "eigen", "batch_segments", "file"));
   EXPECT_EQ(record["version"], MOCLEAN_VERSION);
   EXPECT_THAT(record["device"].get<std::string>(), HasSubstr("opencl"));
   const nlohmann::json& method = record["method"];
@@ -77,6 +83,31 @@ TEST_F(Denoise, RecordHoldsTheWholeRun) {
   EXPECT_EQ(method["tolerance"], 1e-7);
   EXPECT_EQ(method["order"], "ae");
   ASSERT_EQ(record["inputs"].size(), 1);
+}
+
+TEST_F(Denoise, RecordStatesTimeAndMemoryOfTheRun) {
+  const Outcome outcome = denoise({"-o", output_, "--json", "-", "--memory-limit", "64M"});
+
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json record = outcome.json();
+  EXPECT_THAT(keys(record["seconds"]), UnorderedElementsAre("read", "solve", "write", "total"));
+  for (const auto& [stage, seconds] : record["seconds"].items()) {
+    EXPECT_GT(seconds.get<double>(), 0) << stage;
+    EXPECT_LE(seconds, record["seconds"]["total"]) << stage;
+  }
+  EXPECT_THAT(keys(record["memory"]), UnorderedElementsAre("limit", "peak"));
+  EXPECT_EQ(record["memory"]["limit"], 64 << 20);
+  EXPECT_GT(record["memory"]["peak"], 1 << 20);
+  EXPECT_EQ(record["groups"], 1);
+}
+
+TEST_F(Denoise, RecordingBeyondTheMemoryLimitIsNamed) {
+  const Outcome outcome = denoise({"-o", output_, "--memory-limit", "512K"});
+
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr(input_ + ": needs 610.3 KiB of memory, but --memory-limit "
+                                              "leaves 384 KiB for recordings"));
+  EXPECT_THAT(folder_.names(), ElementsAre("walk.npy"));
 }
 
 TEST_F(Denoise, RecordDescribesEverySegmentOfAnInput) {
@@ -201,6 +232,18 @@ TEST_F(Denoise, OptionOverrulesTheEnvironment) {
   EXPECT_EQ(denoise({"-o", output_, "--device", "0:0"}, {.device = "abacus"}).exit_code, 0);
 }
 
+TEST_F(Denoise, SegmentBeyondTheDevicesShareIsNamed) {
+  const std::string walk = folder_.write("long.npy", synthetic_walk(2000));
+
+  const Outcome outcome =
+      run({"denoise", walk, "-o", output_, "--method", "rpca", "--memory-limit", "16M"});
+
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr(walk + ": a segment of 2000 frames x 93 columns needs"));
+  EXPECT_THAT(outcome.err, HasSubstr("more than the 4 MiB usable"));
+  EXPECT_THAT(folder_.names(), ElementsAre("long.npy", "walk.npy"));
+}
+
 struct WrongOptions {
   const char* name;
   std::vector<std::string> options;
@@ -243,6 +286,9 @@ INSTANTIATE_TEST_SUITE_P(
         WrongOptions{"RpcaSegments", {"--method", "rpca", "--segments", "2"}, "--method slra"},
         WrongOptions{"RpcaLength", {"--segment-length", "9", "--method", "rpca"}, "--method slra"},
         WrongOptions{"Jobs", {"--jobs", "0"}, "--jobs"},
+        WrongOptions{"MemoryText", {"--memory-limit", "lots"}, "--memory-limit is 'lots'"},
+        WrongOptions{"MemoryZero", {"--memory-limit", "0"}, "--memory-limit is '0'"},
+        WrongOptions{"MemoryUnit", {"--memory-limit", "2X"}, "such as 512M or 2G"},
         WrongOptions{"FramesText", {"--frames", "1-5"}, "expected A:B"},
         WrongOptions{"FramesNegative", {"--frames", ":-5"}, "expected A:B"},
         WrongOptions{"FramesEmpty", {"--frames", "5:5"}, "holds no frame"},

@@ -1,7 +1,10 @@
 // Signals, and what is shown on a terminal: both need a run that takes a while.
 
+#include <algorithm>
+
 #include <gmock/gmock.h>
 #include <signal.h>
+#include <unistd.h>
 
 #include "cli/program.hpp"
 #include "support/synthetic_walk.hpp"
@@ -66,6 +69,26 @@ TEST(Interrupt, LeavesAnEarlierResultAsItWas) {
 
   EXPECT_EQ(program.wait().exit_code, 130);
   EXPECT_EQ(content(earlier), "earlier");
+}
+
+TEST(Interrupt, RemovesTheResultsThatWaitForTheOthers) {
+  const TemporaryFolder folder;
+  for (const char* name : {"takes/a.npy", "takes/b.npy", "takes/c.npy"})
+    folder.write(name, synthetic_walk(3000));
+  Program program({"denoise", folder / "takes", "-o", folder / "clean", "--backend", "reference",
+                   "--jobs", "1", "--memory-limit", "32M"},
+                  {.device = "", .terminal = true});
+  const auto some_wait = [&] {
+    return std::ranges::any_of(folder.names(),
+                               [](const std::string& name) { return name.ends_with(".tmp"); });
+  };
+  ASSERT_TRUE(program.shows("15 of about 45 segments"));
+  while (!some_wait()) usleep(1000);
+
+  program.send(SIGINT);
+
+  EXPECT_EQ(program.wait().exit_code, 130);
+  EXPECT_THAT(folder.names(), ElementsAre("takes", "takes/a.npy", "takes/b.npy", "takes/c.npy"));
 }
 
 TEST(Interrupt, KilledRunLeavesNoHalfFile) {

@@ -45,8 +45,12 @@ std::string rewound_content(int file) {
 std::vector<std::string> environment(const Start& start) {
   std::vector<std::string> variables;
   for (char** variable = environ; *variable; ++variable)
-    if (!std::string_view(*variable).starts_with("MOCLEAN_DEVICE="))
+    if (!std::string_view(*variable).starts_with("MOCLEAN_DEVICE=") &&
+        !std::string_view(*variable).starts_with("XDG_CACHE_HOME="))
       variables.emplace_back(*variable);
+  variables.push_back(
+      "XDG_CACHE_HOME=" +
+      (start.cache.empty() ? (fs::temp_directory_path() / "moclean-test").string() : start.cache));
   if (!start.device.empty()) variables.push_back("MOCLEAN_DEVICE=" + start.device);
   return variables;
 }

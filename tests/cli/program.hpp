@@ -49,7 +49,8 @@ struct Outcome {
 
 /// How `moclean` is started.
 struct Start {
-  std::string device;             ///< MOCLEAN_DEVICE; unset where empty
+  std::string device = {};        ///< MOCLEAN_DEVICE; unset where empty
+  std::string cache = {};         ///< XDG_CACHE_HOME; a folder without tunings where empty
   bool terminal = false;          ///< standard error is a terminal
   bool ignore_interrupt = false;  ///< SIGINT is ignored, as under nohup
 };

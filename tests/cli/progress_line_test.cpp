@@ -15,6 +15,11 @@ TEST(ProgressText, PromisesNothingBeforeTheFirstSegment) {
             "solving: 0 of 140 segments");
 }
 
+TEST(ProgressText, SaysWhereTheTotalIsAnEstimate) {
+  EXPECT_EQ(progress_text("solving", {.finished = 0, .total = 140}, 0, ProgressTotal::estimated),
+            "solving: 0 of about 140 segments");
+}
+
 TEST(ProgressText, IsTheTaskAloneWithoutATotal) {
   EXPECT_EQ(progress_text("solving", {}, 2.5), "solving");
 }

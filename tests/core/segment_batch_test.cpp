@@ -8,8 +8,8 @@ namespace moclean {
 namespace {
 
 TEST(SegmentBatch, PadsColumnsToWholeVectors) {
-  EXPECT_EQ(padded(1), 8);
-  EXPECT_EQ(padded(8), 8);
+  EXPECT_EQ(padded(1), 16);
+  EXPECT_EQ(padded(16), 16);
   EXPECT_EQ(padded(93), 96);
 }
 
@@ -20,7 +20,7 @@ TEST(SegmentBatch, StacksSegmentsInOneMatrix) {
 
   EXPECT_EQ(batch.segments(), 2);
   EXPECT_EQ(batch.rows(1), 3);
-  EXPECT_EQ(batch.storage()[2 * 8 + 2], 7);
+  EXPECT_EQ(batch.storage()[static_cast<std::size_t>(2 * padded(3) + 2)], 7);
 }
 
 TEST(SegmentBatch, StartsAllZeroIncludingPadding) {

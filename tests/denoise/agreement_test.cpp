@@ -67,18 +67,29 @@ TEST(Agreement, NoticesOtherIterationsAndRanksInAnySegment) {
   longer.segments[1].outcome.iterations = 32;
   richer.segments[0].outcome.rank = 5;
 
-  EXPECT_FALSE(agreement(longer, reference).same_iterations);
-  EXPECT_TRUE(agreement(longer, reference).same_rank);
-  EXPECT_FALSE(agreement(richer, reference).same_rank);
-  EXPECT_TRUE(agreement(richer, reference).same_iterations);
+  EXPECT_EQ(agreement(longer, reference).iterations_apart, 1);
+  EXPECT_EQ(agreement(longer, reference).ranks_apart, 0);
+  EXPECT_EQ(agreement(richer, reference).ranks_apart, 1);
+  EXPECT_EQ(agreement(richer, reference).iterations_apart, 0);
 }
 
 TEST(Agreement, IsWithinBoundsUpToTheBoundsThemselves) {
   EXPECT_TRUE(within({.low_rank = 1e-8, .sparse = 1e-6}));
   EXPECT_FALSE(within({.low_rank = 1.1e-8, .sparse = 0}));
   EXPECT_FALSE(within({.low_rank = 0, .sparse = 1.1e-6}));
-  EXPECT_FALSE(within({.same_iterations = false}));
-  EXPECT_FALSE(within({.same_rank = false}));
+  EXPECT_FALSE(within({.iterations_apart = 1}));
+  EXPECT_FALSE(within({.ranks_apart = 1}));
+}
+
+TEST(Agreement, MixedPrecisionHasWiderBounds) {
+  const AgreementBounds& bounds = mixed_agreement_bounds;
+
+  EXPECT_TRUE(
+      within({.low_rank = 1e-5, .sparse = 1e-2, .iterations_apart = 1, .ranks_apart = 3}, bounds));
+  EXPECT_FALSE(within({.low_rank = 1.1e-5}, bounds));
+  EXPECT_FALSE(within({.sparse = 1.1e-2}, bounds));
+  EXPECT_FALSE(within({.iterations_apart = 2}, bounds));
+  EXPECT_FALSE(within({.ranks_apart = 4}, bounds));
 }
 
 TEST(Agreement, IsNeverWithinBoundsWithNaN) {

@@ -37,6 +37,28 @@ TEST(Kernel, RunsOverGridsThatAreNoMultipleOfTheWorkGroup) {
   for (int i = 0; i < 37; ++i) EXPECT_EQ(sums[static_cast<std::size_t>(i)], i + 5);
 }
 
+TEST(Kernel, PassesLocalMemoryAsAnArgument) {
+  const Device& device = test::device();
+  constexpr const char* reverse_source = R"(
+kernel void reverse(global int* a, local int* group) {
+  const int i = get_local_id(0), last = get_local_size(0) - 1;
+  group[i] = a[get_global_id(0)];
+  barrier(CLK_LOCAL_MEM_FENCE);
+  a[get_global_id(0)] = group[last - i];
+}
+)";
+  const std::vector<int> values = {1, 2, 3, 4, 5, 6};
+  std::vector<int> reversed(values.size());
+  Buffer<int> a(device, std::span<const int>(values));
+  Kernel reverse(Program(device, reverse_source, defines), "reverse");
+
+  reverse(Grid{.x = 6, .group_x = 3}, a, LocalMemory<int>{3});
+  a.read(reversed);
+
+  EXPECT_THAT(reversed, testing::ElementsAre(3, 2, 1, 6, 5, 4));
+  EXPECT_GE(reverse.largest_group(), 3u);
+}
+
 TEST(Kernel, EmptyGridIsNoLaunch) {
   const Device& device = test::device();
   Buffer<int> buffer(device, 0);

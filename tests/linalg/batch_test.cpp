@@ -18,9 +18,9 @@ TEST(Batch, PacksSquareMatricesOfTheSmallerSide) {
   EXPECT_EQ(batch.segment(0).order, 4);
   EXPECT_EQ(batch.segment(1).order, 10);
   EXPECT_EQ(batch.segment(1).order_pitch, 16);
-  EXPECT_EQ(batch.segment(1).square, 4 * 8);
+  EXPECT_EQ(batch.segment(1).square, 4 * 16);
   EXPECT_EQ(batch.segment(1).first_row, 4);
-  EXPECT_EQ(batch.square_size(), 4u * 8 + 10 * 16);
+  EXPECT_EQ(batch.square_size(), 4u * 16 + 10 * 16);
   EXPECT_EQ(batch.stacked_size(), 54u * 16);
 }
 
@@ -44,7 +44,8 @@ TEST(Batch, PartStartsAtItsOwnRowZero) {
 }
 
 TEST(Batch, DroppedSegmentsLeaveTheLaunches) {
-  const SegmentBatch shape(10, {0, 40, 80, 120});
+  constexpr Index rows = block_rows + 8;  // two blocks each
+  const SegmentBatch shape(10, {0, rows, 2 * rows, 3 * rows});
   Batch batch(test::device(), shape, 0, 3);
 
   batch.select(std::vector<std::int32_t>{0, 2});

@@ -1,105 +1,126 @@
 #include "moclean/linalg/eigen.hpp"
 
-#include <functional>
+#include <algorithm>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <Eigen/SVD>
 #include <gtest/gtest.h>
 
 #include "support/device.hpp"
 #include "support/matrix.hpp"
+#include "support/squares.hpp"
+#include "support/symmetric.hpp"
 #include "support/tolerance.hpp"
 
 namespace moclean {
 namespace {
 
-// Q diag(values) Q' with a random orthogonal Q.
-Matrix with_spectrum(const Eigen::VectorXd& values, std::uint64_t seed) {
-  const Matrix random = test::random_matrix(values.size(), values.size(), seed);
-  const Matrix q = Eigen::HouseholderQR<Matrix>(random).householderQ();
-  return q * values.asDiagonal() * q.transpose();
-}
-
-struct Kind {
-  const char* name;
-  std::function<Matrix(Index)> make;
+// Eigenvectors in rows and eigenvalues of every matrix.
+struct Decomposition {
+  std::vector<Matrix> vectors;
+  std::vector<Eigen::VectorXd> values;
 };
 
-const std::vector<Kind>& kinds() {
-  using Eigen::VectorXd;
-  static const std::vector<Kind> all = {
-      {"Random",
-       [](Index n) {
-         const Matrix r = test::random_matrix(n, n, 5);
-         return Matrix(r + r.transpose());
-       }},
-      {"Gram",
-       [](Index n) {
-         const Matrix r = test::random_matrix(3 * n, n, 6);
-         return Matrix(r.transpose() * r);
-       }},
-      {"RankDeficient",
-       [](Index n) {
-         const Matrix r = test::random_matrix((n + 2) / 3, n, 7);
-         return Matrix(r.transpose() * r);
-       }},
-      {"Clustered",
-       [](Index n) {
-         VectorXd values = VectorXd::Constant(n, 1);
-         values.head(n / 2).array() += 1e-10;
-         return with_spectrum(values, 8);
-       }},
-      {"Graded",
-       [](Index n) {
-         VectorXd values(n);
-         for (Index i = 0; i < n; ++i)
-           values(i) = std::pow(10, -16.0 * static_cast<double>(i) / static_cast<double>(n));
-         return with_spectrum(values, 9);
-       }},
-      {"Diagonal", [](Index n) { return Matrix(VectorXd::LinSpaced(n, -3, 5).asDiagonal()); }},
-      {"Zero", [](Index n) { return Matrix(Matrix::Zero(n, n)); }},
-      {"Constant", [](Index n) { return Matrix(Matrix::Constant(n, n, 2)); }},
-      {"Tiny", [](Index n) { return Matrix(1e-200 * kinds()[0].make(n)); }},
-      {"Huge", [](Index n) { return Matrix(1e200 * kinds()[0].make(n)); }},
-  };
-  return all;
+// Matrices of any orders as one batch, and the results read back.
+class EigenBatch {
+ public:
+  explicit EigenBatch(const std::vector<Matrix>& matrices)
+      : batch_(test::device(), shape_of(matrices), 0, static_cast<Index>(matrices.size())),
+        a_(test::upload_squares(batch_, matrices)),
+        z_(test::device(), batch_.square_size()),
+        values_(test::device(), batch_.vector_size()) {
+    z_.fill_zero();
+    values_.fill_zero();
+  }
+
+  Decomposition all() {
+    eigen_(batch_, a_, z_, values_);
+    return result();
+  }
+
+  // As the solver does it: eigenvalues of the chosen ones, then the leading eigenvectors.
+  Decomposition leading(const std::vector<std::int32_t>& chosen,
+                        const std::vector<std::int32_t>& wanted) {
+    eigen_.values(batch_, Buffer<std::int32_t>(test::device(), std::span(chosen)), a_, values_);
+    eigen_.vectors(batch_, Buffer<std::int32_t>(test::device(), std::span(wanted)), a_, z_);
+    return result();
+  }
+
+  void rewrite(const std::vector<Matrix>& matrices) { a_ = test::upload_squares(batch_, matrices); }
+
+ private:
+  // Segments of as many rows as a matrix has, which are not more than there are columns.
+  static SegmentBatch shape_of(const std::vector<Matrix>& matrices) {
+    Index columns = 0;
+    std::vector<Index> first_row = {0};
+    for (const Matrix& matrix : matrices) {
+      columns = std::max(columns, matrix.rows());
+      first_row.push_back(first_row.back() + matrix.rows());
+    }
+    return {columns, first_row};
+  }
+
+  Decomposition result() {
+    eigen_.check(batch_);
+    std::vector<double> values(batch_.vector_size());
+    values_.read(values);
+    Decomposition d{.vectors = test::download_squares(batch_, z_), .values = {}};
+    for (Index b = 0; b < batch_.segments(); ++b) {
+      const SegmentRecord& s = batch_.segment(b);
+      Matrix& vectors = d.vectors[static_cast<std::size_t>(b)];
+      vectors = Matrix(vectors.leftCols(s.order));
+      d.values.push_back(Eigen::Map<const Eigen::VectorXd>(values.data() + s.vector, s.order));
+    }
+    return d;
+  }
+
+  Batch batch_;
+  Buffer<double> a_, z_, values_;
+  SymmetricEigen eigen_{test::device()};
+};
+
+std::vector<Matrix> every_kind(Index n) {
+  std::vector<Matrix> matrices;
+  for (const test::SymmetricKind& kind : test::symmetric_kinds()) matrices.push_back(kind.make(n));
+  return matrices;
 }
 
 class SymmetricEigenTest : public testing::TestWithParam<int> {};
 
 TEST_P(SymmetricEigenTest, DecomposesEveryKindOfMatrixToRounding) {
   const Index n = GetParam();
-  std::vector<Matrix> matrices;
-  for (const Kind& kind : kinds()) matrices.push_back(kind.make(n));
-  const SegmentBatch data = test::batch_of(matrices);
-  const Device& device = test::device();
-  const Batch batch(device, data, 0, data.segments());
-  Buffer<double> a(device, std::as_const(data).storage());  // a square segment is laid out alike
-  Buffer<double> z(device, batch.square_size()), d(device, batch.vector_size());
-  std::vector<double> vectors(batch.square_size()), values(batch.vector_size());
+  const std::vector<Matrix> matrices = every_kind(n);
 
-  SymmetricEigen eigen(device);
-  eigen(batch, a, z, d);
-  eigen.check(batch);
-  z.read(vectors);
-  d.read(values);
+  const Decomposition result = EigenBatch(matrices).all();
 
-  for (Index b = 0; b < data.segments(); ++b) {
-    SCOPED_TRACE(kinds()[static_cast<std::size_t>(b)].name);
-    const SegmentRecord& s = batch.segment(b);
-    const Matrix& matrix = matrices[static_cast<std::size_t>(b)];
-    const Matrix zb =
-        ConstMatrixView(vectors.data() + s.square, n, n, Eigen::OuterStride<>(s.order_pitch));
-    const Eigen::Map<const Eigen::VectorXd> db(values.data() + s.vector, n);
-    EXPECT_TRUE(std::is_sorted(db.begin(), db.end(), std::greater<>()));
+  for (std::size_t b = 0; b < matrices.size(); ++b) {
+    SCOPED_TRACE(test::symmetric_kinds()[b].name);
     // Scaled to entries near 1, so that norms of the tiny and the huge do not leave the range.
-    const double scale = std::max(matrix.cwiseAbs().maxCoeff(), 1e-300);
-    const Matrix residual =
-        (matrix / scale) * zb.transpose() - zb.transpose() * (db / scale).asDiagonal();
-    EXPECT_LE(residual.norm(), test::tolerance::decomposition(n) * (matrix / scale).norm());
-    EXPECT_LE((zb * zb.transpose() - Matrix::Identity(n, n)).norm(),
-              test::tolerance::decomposition(n) * std::sqrt(static_cast<double>(n)));
+    const double scale = std::max(matrices[b].cwiseAbs().maxCoeff(), 1e-300);
+    const Matrix g = matrices[b] / scale, &z = result.vectors[b];
+    const Eigen::VectorXd values = result.values[b] / scale;
+    const Matrix residual = g * z.transpose() - z.transpose() * values.asDiagonal();
+    EXPECT_TRUE(std::ranges::is_sorted(values, std::greater<>()));
+    EXPECT_LE(residual.norm(), test::tolerance::eigen_residual() * g.norm());
+    EXPECT_LE((z * z.transpose() - Matrix::Identity(n, n)).norm(),
+              test::tolerance::eigen_orthogonality());
+  }
+}
+
+TEST_P(SymmetricEigenTest, LeadingEigenvectorsAreThoseOfTheWholeDecomposition) {
+  const Index n = GetParam();
+  const std::vector<Matrix> matrices = every_kind(n);
+  const auto count = static_cast<std::int32_t>((n + 1) / 2);
+  const std::vector<std::int32_t> all(matrices.size(), 1), wanted(matrices.size(), count);
+
+  const Decomposition whole = EigenBatch(matrices).all();
+  const Decomposition part = EigenBatch(matrices).leading(all, wanted);
+
+  for (std::size_t b = 0; b < matrices.size(); ++b) {
+    SCOPED_TRACE(test::symmetric_kinds()[b].name);
+    EXPECT_TRUE(test::same_bits(Matrix(whole.values[b]), Matrix(part.values[b])));
+    EXPECT_TRUE(test::same_bits(Matrix(whole.vectors[b].topRows(count)),
+                                Matrix(part.vectors[b].topRows(count))));
+    EXPECT_EQ(part.vectors[b].bottomRows(n - count).cwiseAbs().sum(), 0) << "rows not wanted";
   }
 }
 
@@ -107,21 +128,45 @@ INSTANTIATE_TEST_SUITE_P(Sizes, SymmetricEigenTest,
                          testing::Values(1, 2, 3, 5, 7, 8, 9, 31, 64, 93, 129, 512),
                          testing::PrintToStringParamName());
 
+// Lanes of a vector hold different matrices; orders differ, so lanes end at different times.
+TEST(SymmetricEigen, ResultsDoNotDependOnTheNeighbours) {
+  std::vector<Matrix> matrices;
+  for (const Index n : {7, 1, 93, 20, 64, 2, 31, 5, 50, 93, 3})
+    matrices.push_back(test::random_gram(2 * n, n, static_cast<std::uint64_t>(n)));
+
+  const Decomposition together = EigenBatch(matrices).all();
+
+  for (std::size_t b = 0; b < matrices.size(); ++b) {
+    const Decomposition alone = EigenBatch({matrices[b]}).all();
+    EXPECT_TRUE(test::same_bits(together.vectors[b], alone.vectors[0])) << "matrix " << b;
+    EXPECT_TRUE(test::same_bits(Matrix(together.values[b]), Matrix(alone.values[0])));
+  }
+}
+
+TEST(SymmetricEigen, LeavesAloneWhatIsNotChosen) {
+  const std::vector<Matrix> first = {test::random_gram(40, 20, 1), test::random_gram(40, 20, 2)};
+  const std::vector<Matrix> second = {test::random_gram(40, 20, 3), test::random_gram(40, 20, 4)};
+  EigenBatch batch(first);
+  const Decomposition before = batch.leading({1, 1}, {4, 4});
+
+  batch.rewrite(second);
+  const Decomposition after = batch.leading({0, 1}, {6, 6});
+
+  const Decomposition whole = EigenBatch(first).all(), fresh = EigenBatch(second).all();
+  EXPECT_TRUE(test::same_bits(Matrix(after.values[0]), Matrix(before.values[0])));
+  EXPECT_TRUE(test::same_bits(Matrix(after.vectors[0].topRows(6)),  // two more than before
+                              Matrix(whole.vectors[0].topRows(6))));
+  EXPECT_TRUE(test::same_bits(Matrix(after.values[1]), Matrix(fresh.values[1])));
+}
+
 TEST(SymmetricEigen, ReadsTheUpperTriangleOnly) {
   Matrix upper(2, 2);
   upper << 2, 1, 777, 2;  // the eigenvalues of [2 1; 1 2] are 1 and 3
-  const SegmentBatch data = test::batch_of({upper});
-  const Device& device = test::device();
-  const Batch batch(device, data, 0, 1);
-  Buffer<double> a(device, std::as_const(data).storage()), z(device, 16), d(device, 8);
-  std::vector<double> values(8);
 
-  SymmetricEigen eigen(device);
-  eigen(batch, a, z, d);
-  d.read(values);
+  const Eigen::VectorXd values = EigenBatch({upper}).all().values[0];
 
-  EXPECT_NEAR(values[0], 3, test::tolerance::by_hand(3));
-  EXPECT_NEAR(values[1], 1, test::tolerance::by_hand(3));
+  EXPECT_NEAR(values(0), 3, test::tolerance::by_hand(3));
+  EXPECT_NEAR(values(1), 1, test::tolerance::by_hand(3));
 }
 
 // Gram matrices of X diag(g), g from 1 to 1e-8: the eigenvalues span 16 decades, and those of the
@@ -132,33 +177,26 @@ TEST(SymmetricEigen, KeepsSmallEigenvaluesOfGradedMatricesToRelativeAccuracy) {
   Matrix factor = test::random_matrix(200, n, 10);
   for (Index j = 0; j < n; ++j)
     factor.col(j) *= std::pow(10, -8.0 * static_cast<double>(j) / (n - 1));
-  const SegmentBatch data = test::batch_of({Matrix(factor.transpose() * factor)});
   const Eigen::VectorXd sigma = Eigen::JacobiSVD<Eigen::MatrixXd>(factor).singularValues();
-  const Device& device = test::device();
-  const Batch batch(device, data, 0, 1);
-  Buffer<double> a(device, std::as_const(data).storage());
-  Buffer<double> z(device, batch.square_size()), d(device, batch.vector_size());
-  std::vector<double> values(batch.vector_size());
 
-  SymmetricEigen eigen(device);
-  eigen(batch, a, z, d);
-  d.read(values);
+  const Eigen::VectorXd values = EigenBatch({Matrix(factor.transpose() * factor)}).all().values[0];
 
   for (Index k = 0; k < n; ++k)
-    EXPECT_NEAR(std::sqrt(values[static_cast<std::size_t>(k)]), sigma(k),
-                test::tolerance::decomposition(200) * sigma(k));
+    EXPECT_NEAR(std::sqrt(values(k)), sigma(k), test::tolerance::decomposition(200) * sigma(k));
 }
 
 TEST(SymmetricEigen, DoesNotReadThePadding) {
   const Device& device = test::device();
   const SegmentBatch shape(3, {0, 3});
   const Batch batch(device, shape, 0, 1);
-  std::vector<double> matrix(24, std::numeric_limits<double>::quiet_NaN());
+  const auto pitch = static_cast<Index>(padded(3));
+  std::vector<double> matrix(batch.square_size(), std::numeric_limits<double>::quiet_NaN());
   const Eigen::Matrix3d expected{{2, 1, 0}, {1, 3, 1}, {0, 1, 4}};
   for (Index i = 0; i < 3; ++i)
-    for (Index j = i; j < 3; ++j) matrix[static_cast<std::size_t>(8 * i + j)] = expected(i, j);
-  Buffer<double> a(device, std::span<const double>(matrix)), z(device, 24), d(device, 8);
-  std::vector<double> values(8);
+    for (Index j = i; j < 3; ++j) matrix[static_cast<std::size_t>(pitch * i + j)] = expected(i, j);
+  Buffer<double> a(device, std::span<const double>(matrix)), z(device, batch.square_size());
+  Buffer<double> d(device, batch.vector_size());
+  std::vector<double> values(batch.vector_size());
 
   SymmetricEigen eigen(device);
   eigen(batch, a, z, d);
@@ -170,17 +208,10 @@ TEST(SymmetricEigen, DoesNotReadThePadding) {
 }
 
 TEST(SymmetricEigen, ReportsAMatrixItCannotDecompose) {
-  const SegmentBatch data = test::batch_of(
+  EigenBatch batch(
       {Matrix::Identity(5, 5), Matrix::Constant(5, 5, std::numeric_limits<double>::quiet_NaN())});
-  const Device& device = test::device();
-  const Batch batch(device, data, 0, 2);
-  Buffer<double> a(device, std::as_const(data).storage());
-  Buffer<double> z(device, batch.square_size()), d(device, batch.vector_size());
 
-  SymmetricEigen eigen(device);
-  eigen(batch, a, z, d);
-
-  EXPECT_THROW(eigen.check(batch), DeviceError);
+  EXPECT_THROW(batch.all(), DeviceError);
 }
 
 }  // namespace

@@ -18,7 +18,7 @@ TEST(Norms, AreThoseOfEverySegment) {
   Buffer<double> frobenius(device, 3), largest(device, 3);
   std::vector<double> f(3), l(3);
 
-  Norms norms(device);
+  Norms<double> norms(device);
   norms(batch, x, frobenius, largest);
   frobenius.read(f);
   largest.read(l);

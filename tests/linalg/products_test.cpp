@@ -6,6 +6,7 @@
 
 #include "support/device.hpp"
 #include "support/matrix.hpp"
+#include "support/squares.hpp"
 #include "support/tolerance.hpp"
 
 namespace moclean {
@@ -38,22 +39,11 @@ class ProductsTest : public testing::TestWithParam<std::tuple<ProductPath, Shape
 
   // The order x order matrix of a segment among all of them, read back.
   Matrix square(const Buffer<double>& buffer, Index b) const {
-    std::vector<double> all(batch_.square_size());
-    buffer.read(all);
-    const SegmentRecord& s = batch_.segment(b);
-    return ConstMatrixView(all.data() + s.square, s.order, s.order,
-                           Eigen::OuterStride<>(s.order_pitch));
+    return test::download_squares(batch_, buffer)[static_cast<std::size_t>(b)].leftCols(order(b));
   }
 
-  // Writes one square matrix per segment in device layout.
   Buffer<double> squares(const std::vector<Matrix>& matrices) const {
-    std::vector<double> all(batch_.square_size());
-    for (Index b = 0; b < 3; ++b) {
-      const SegmentRecord& s = batch_.segment(b);
-      MatrixView(all.data() + s.square, s.order, s.order, Eigen::OuterStride<>(s.order_pitch)) =
-          matrices[static_cast<std::size_t>(b)];
-    }
-    return Buffer<double>(test::device(), std::span<const double>(all));
+    return test::upload_squares(batch_, matrices);
   }
 
   Index order(Index b) const { return batch_.segment(b).order; }
@@ -82,16 +72,19 @@ TEST_P(ProductsTest, GramMatchesReferenceInTheUpperTriangle) {
 TEST_P(ProductsTest, ReconstructMatchesReference) {
   std::vector<Matrix> z;
   std::vector<double> f(batch_.vector_size());
+  std::vector<std::int32_t> terms;
   for (Index b = 0; b < 3; ++b) {
     z.push_back(test::random_matrix(order(b), order(b), static_cast<std::uint64_t>(10 + b)));
-    for (Index k = 0; k < order(b); ++k)  // every third weight is zero, as below the threshold
-      f[static_cast<std::size_t>(batch_.segment(b).vector + k)] =
-          k % 3 == 2 ? 0 : 1 / static_cast<double>(k + 1);
+    terms.push_back(static_cast<std::int32_t>(order(b) / 2 + 1));  // as many lie above a threshold
+    for (Index k = 0; k < terms.back(); ++k)
+      f[static_cast<std::size_t>(batch_.segment(b).vector + k)] = 1 / static_cast<double>(k + 1);
   }
   const Buffer<double> weights(test::device(), std::span<const double>(f));
   Buffer<double> w = zeros(batch_.square_size());
 
-  products_.reconstruct(batch_, squares(z), weights, w);
+  products_.reconstruct(batch_, squares(z), weights,
+                        Buffer<std::int32_t>(test::device(), std::span<const std::int32_t>(terms)),
+                        w);
 
   for (Index b = 0; b < 3; ++b) {
     const Matrix& zb = z[static_cast<std::size_t>(b)];

@@ -118,6 +118,19 @@ TEST(ForwardKinematics, KeepsSeveralRootsApart) {
   EXPECT_EQ(positions, row({1, 0, 0, 2, 7, 0}));
 }
 
+TEST(ForwardKinematics, PlacesAFrameWhateverFramesAreBesideIt) {
+  Skeleton skeleton;
+  skeleton.bones = {{.name = "root", .channels = {translate_x, rotate_z, rotate_y}},
+                    {.name = "child", .parent = 0, .channels = {rotate_x}, .tail = {1, 2, 3}},
+                    {.name = "rigid", .parent = 1, .offset = {0, 4, 0}}};
+  const Matrix motion = test::random_matrix(11, 4, 1);
+
+  const Matrix together = forward_kinematics(skeleton, motion);
+
+  for (Index f = 0; f < motion.rows(); ++f)
+    EXPECT_TRUE(test::same_bits(together.row(f), forward_kinematics(skeleton, motion.row(f)))) << f;
+}
+
 TEST(ForwardKinematics, RejectsMotionOfAnotherWidth) {
   Skeleton skeleton;
   skeleton.bones = {{.name = "a", .channels = {translate_x}}};

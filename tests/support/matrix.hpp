@@ -1,6 +1,9 @@
 #pragma once
 
-#include <cstring>
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include "moclean/core/matrix.hpp"
@@ -20,16 +23,24 @@ inline double largest_difference(const ConstMatrixRef& a, const ConstMatrixRef& 
   return a.size() == 0 ? 0 : (a - b).cwiseAbs().maxCoeff();
 }
 
-/// Equal shape and equal bits, so that NaN equals NaN and 0 differs from -0.
+/// Equal bits, so that NaN equals NaN and 0 differs from -0.
+inline bool same_bits(std::span<const double> a, std::span<const double> b) {
+  const auto bits_of = [](double value) { return std::bit_cast<std::uint64_t>(value); };
+  return std::ranges::equal(a, b, {}, bits_of, bits_of);
+}
+
+/// Equal shape and equal bits.
 inline bool same_bits(const Matrix& a, const Matrix& b) {
-  return a.rows() == b.rows() && a.cols() == b.cols() &&
-         std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) == 0;
+  const auto entries = [](const Matrix& m) {
+    return std::span(m.data(), static_cast<std::size_t>(m.size()));
+  };
+  return a.rows() == b.rows() && a.cols() == b.cols() && same_bits(entries(a), entries(b));
 }
 
 /// Equal layout and equal bits, the padding included.
 inline bool same_bits(const SegmentBatch& a, const SegmentBatch& b) {
   return a.columns() == b.columns() && a.first_rows() == b.first_rows() &&
-         std::memcmp(a.storage().data(), b.storage().data(), a.storage().size_bytes()) == 0;
+         same_bits(a.storage(), b.storage());
 }
 
 /// Stacks matrices of equal width as the segments of one batch.

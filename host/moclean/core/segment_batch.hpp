@@ -7,9 +7,9 @@
 
 namespace moclean {
 
-/// Columns are padded to a multiple of this many doubles: one cache line, and a whole number of the
-/// widest vectors (8 doubles) a device loads at once.
-inline constexpr Index pitch_multiple = 8;
+/// Columns are padded to a multiple of this many numbers: whole cache lines, and a whole number of
+/// the widest vectors (8 doubles, 16 floats) a device loads at once.
+inline constexpr Index pitch_multiple = 16;
 
 /// Smallest pitch that holds `columns`: the next multiple of `pitch_multiple`.
 constexpr Index padded(Index columns) {

@@ -1,5 +1,8 @@
 #include "moclean/denoise/agreement.hpp"
 
+#include <algorithm>
+#include <cstdlib>
+
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
@@ -40,16 +43,17 @@ Agreement agreement(const Denoised& tested, const Denoised& reference) {
   for (std::size_t s = 0; s < tested.segments.size(); ++s) {
     const SegmentOutcome& own = tested.segments[s].outcome;
     const SegmentOutcome& expected = reference.segments[s].outcome;
-    result.same_iterations &= own.iterations == expected.iterations;
-    result.same_rank &= own.rank == expected.rank;
+    result.iterations_apart =
+        std::max(result.iterations_apart, std::abs(own.iterations - expected.iterations));
+    result.ranks_apart = std::max(result.ranks_apart, std::abs(own.rank - expected.rank));
   }
   return result;
 }
 
-bool within(const Agreement& agreement) {
-  return agreement.low_rank <= low_rank_agreement_bound &&
-         agreement.sparse <= sparse_agreement_bound && agreement.same_iterations &&
-         agreement.same_rank;
+bool within(const Agreement& agreement, const AgreementBounds& bounds) {
+  return agreement.low_rank <= bounds.low_rank && agreement.sparse <= bounds.sparse &&
+         agreement.iterations_apart <= bounds.iterations_apart &&
+         agreement.ranks_apart <= bounds.ranks_apart;
 }
 
 }  // namespace moclean

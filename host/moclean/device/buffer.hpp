@@ -57,4 +57,10 @@ class Buffer {
   cl::Buffer memory_;
 };
 
+/// Makes room for `size` elements, uninitialised, unless there is room already.
+template <class T>
+void grow(Buffer<T>& buffer, const Device& device, std::size_t size) {
+  if (buffer.size() < size) buffer = Buffer<T>(device, size);
+}
+
 }  // namespace moclean

@@ -28,6 +28,7 @@ DeviceInfo info_of(const cl::Platform& platform, const cl::Device& device) {
   info.vector_width =
       std::max(1, static_cast<int>(device.getInfo<CL_DEVICE_NATIVE_VECTOR_WIDTH_DOUBLE>()));
   info.global_memory = device.getInfo<CL_DEVICE_GLOBAL_MEM_SIZE>();
+  info.global_cache = device.getInfo<CL_DEVICE_GLOBAL_MEM_CACHE_SIZE>();
   info.max_allocation = device.getInfo<CL_DEVICE_MAX_MEM_ALLOC_SIZE>();
   info.local_memory = device.getInfo<CL_DEVICE_LOCAL_MEM_SIZE>();
   info.max_work_group = device.getInfo<CL_DEVICE_MAX_WORK_GROUP_SIZE>();
@@ -148,13 +149,14 @@ std::string describe(const DeviceInfo& info) {
                      info.fp64 ? "fp64" : "no fp64");
 }
 
-Device::Device(std::string_view selection) {
+Device::Device(std::string_view selection, Profiling profiling)
+    : profile_(profiling == Profiling::on ? std::make_unique<Profile>() : nullptr) {
   translate_opencl_errors("to open the device", [&] {
     Candidate chosen = choose(selection);
     info_ = std::move(chosen.info);
     device_ = chosen.device;
     context_ = cl::Context(device_);
-    queue_ = cl::CommandQueue(context_, device_);
+    queue_ = cl::CommandQueue(context_, device_, profile_ ? CL_QUEUE_PROFILING_ENABLE : 0);
   });
 }
 

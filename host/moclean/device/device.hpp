@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "moclean/device/opencl.hpp"
+#include "moclean/device/profile.hpp"
 
 namespace moclean {
 
@@ -24,11 +26,15 @@ struct DeviceInfo {
   DeviceKind kind = DeviceKind::other;
   bool fp64 = false;  ///< cl_khr_fp64
   int compute_units = 0;
-  int vector_width = 1;              ///< native vector width in doubles, 1 where fp64 is missing
-  std::uint64_t global_memory = 0;   ///< bytes
+  int vector_width = 1;             ///< native vector width in doubles, 1 where fp64 is missing
+  std::uint64_t global_memory = 0;  ///< bytes
+  std::uint64_t global_cache = 0;   ///< bytes of the cache before it; 0 where the driver tells none
   std::uint64_t max_allocation = 0;  ///< bytes of one buffer
   std::uint64_t local_memory = 0;    ///< bytes per work-group
   std::size_t max_work_group = 0;    ///< work-items
+
+  /// Bytes that a program may take without asking: three quarters of the device's memory.
+  std::uint64_t usable_memory() const { return global_memory / 4 * 3; }
 };
 
 /// Every device of every platform; empty if there is none.
@@ -37,6 +43,9 @@ std::vector<DeviceInfo> list_devices();
 /// One line for people: `0:0 pthread-skylake (cpu, 2 units, 3.4 GiB, fp64)`.
 std::string describe(const DeviceInfo& info);
 
+/// Whether the time of every launch is taken, which needs another kind of queue.
+enum class Profiling { off, on };
+
 /// An OpenCL device with a context and an in-order queue of its own. Not copyable; buffers, kernels
 /// and programs keep what they need of it alive.
 class Device {
@@ -44,7 +53,7 @@ class Device {
   /// Opens the device that `selection` names: empty (best: fp64 before none, GPU before CPU),
   /// `cpu`, `gpu`, `P:D` (platform and device index), or a fragment of its or its platform's name
   /// in any case. Throws DeviceError listing what there is if none matches; there is no fall-back.
-  explicit Device(std::string_view selection = {});
+  explicit Device(std::string_view selection = {}, Profiling profiling = Profiling::off);
 
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
@@ -54,6 +63,9 @@ class Device {
   const cl::CommandQueue& queue() const { return queue_; }
   const cl::Device& handle() const { return device_; }
 
+  /// The launches so far; null unless the device was opened with Profiling::on.
+  Profile* profile() const { return profile_.get(); }
+
   /// Waits until everything enqueued is done.
   void finish() const;
 
@@ -62,6 +74,7 @@ class Device {
   cl::Device device_;
   cl::Context context_;
   cl::CommandQueue queue_;
+  std::unique_ptr<Profile> profile_;
 };
 
 }  // namespace moclean

@@ -1,5 +1,7 @@
 #include "moclean/device/kernel.hpp"
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "moclean/device/kernel_source.hpp"
@@ -8,7 +10,7 @@ namespace moclean {
 namespace {
 
 std::string options_of(const Defines& defines) {
-  std::string options = "-cl-std=CL1.2";
+  std::string options = "-cl-std=CL1.2 -w";  // the test kernels_compile has warnings as errors
   for (const auto& [name, value] : defines) options += fmt::format(" -D{}={}", name, value);
   return options;
 }
@@ -40,13 +42,23 @@ Kernel::Kernel(const Program& program, const std::string& name)
                           [&] { kernel_ = cl::Kernel(program.handle(), name.c_str()); });
 }
 
-void Kernel::launch(const Grid& grid) const {
+std::size_t Kernel::largest_group() const {
+  return translate_opencl_errors("to query kernel " + name_ + " on " + device_->info().name, [&] {
+    return kernel_.getWorkGroupInfo<CL_KERNEL_WORK_GROUP_SIZE>(device_->handle());
+  });
+}
+
+void Kernel::launch(const Grid& grid) {
+  const std::optional<Work> work = std::exchange(work_, std::nullopt);
   if (grid.x == 0 || grid.y == 0 || grid.z == 0) return;
+  cl::Event event;
+  Profile* const profile = device_->profile();
   translate_opencl_errors("to run kernel " + name_ + " on " + device_->info().name, [&] {
     device_->queue().enqueueNDRangeKernel(
         kernel_, cl::NullRange, cl::NDRange(whole_groups(grid.x, grid.group_x), grid.y, grid.z),
-        cl::NDRange(grid.group_x, 1, 1));
+        cl::NDRange(grid.group_x, 1, 1), nullptr, profile ? &event : nullptr);
   });
+  if (profile) profile->record(name_, event, work);
 }
 
 }  // namespace moclean

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -34,13 +35,19 @@ struct Grid {
   std::size_t group_x = 1;  ///< work-items of a work-group along x; along y and z it is 1
 };
 
+/// Local memory for `size` elements of type T, as an argument of a kernel.
+template <class T>
+struct LocalMemory {
+  std::size_t size = 0;
+};
+
 /// A kernel and the queue it runs on: `kernel(Grid{.x = n}, buffer, 3, 0.5)`.
 class Kernel {
  public:
   Kernel(const Program& program, const std::string& name);
 
-  /// Enqueues without waiting. Arguments are Buffer<T>, arithmetic types exactly as the kernel
-  /// declares them, or OpenCL vectors. An empty grid is no launch. Throws DeviceError.
+  /// Enqueues without waiting. Arguments are Buffer<T>, LocalMemory<T>, arithmetic types exactly as
+  /// the kernel declares them, or OpenCL vectors. An empty grid is no launch. Throws DeviceError.
   template <class... Arguments>
   void operator()(const Grid& grid, const Arguments&... arguments) {
     translate_opencl_errors("in kernel " + name_, [&] {
@@ -50,20 +57,36 @@ class Kernel {
     launch(grid);
   }
 
+  /// States the work of the next launch: `kernel.with([&] { return Work{...}; })(grid, ...)`. The
+  /// function is called only where the device is profiled.
+  template <class WorkOf>
+  Kernel& with(const WorkOf& work_of) {
+    if (device_->profile()) work_ = work_of();
+    return *this;
+  }
+
+  /// Work-items of the largest work-group this kernel can run with, as its registers allow.
+  std::size_t largest_group() const;
+
  private:
   template <class T>
   void set(cl_uint index, const Buffer<T>& buffer) {
     kernel_.setArg(index, buffer.memory());
   }
   template <class T>
+  void set(cl_uint index, const LocalMemory<T>& memory) {
+    kernel_.setArg(index, cl::Local(memory.size * sizeof(T)));
+  }
+  template <class T>
   void set(cl_uint index, const T& value) {
     kernel_.setArg(index, value);
   }
-  void launch(const Grid& grid) const;
+  void launch(const Grid& grid);
 
   const Device* device_;
   std::string name_;
   cl::Kernel kernel_;
+  std::optional<Work> work_;  // of the next launch, where it is known
 };
 
 }  // namespace moclean

@@ -6,10 +6,19 @@
 namespace moclean::kernel_source {
 
 extern const std::string_view prelude;
-extern const std::string_view eigen;
+extern const std::string_view tridiagonal;
+extern const std::string_view tridiagonal_ql;
+extern const std::string_view eigenvectors;
+extern const std::string_view tridiagonal_group;
+extern const std::string_view eigen_group;
+extern const std::string_view products_group;
+extern const std::string_view sweep_group;
+extern const std::string_view grams;
 extern const std::string_view norms;
+extern const std::string_view peak;
 extern const std::string_view products;
 extern const std::string_view robust_pca;
 extern const std::string_view scale_rows;
+extern const std::string_view sweep;
 
 }  // namespace moclean::kernel_source

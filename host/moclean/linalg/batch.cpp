@@ -28,6 +28,11 @@ Batch::Batch(const Device& device, const SegmentBatch& shape, Index first, Index
     record.order = static_cast<std::int32_t>(order);
     record.order_pitch = static_cast<std::int32_t>(order_pitch);
     record.first_block = static_cast<std::int32_t>(block_count_);
+    record.partial = static_cast<std::int64_t>(partial_size_);
+    has_wide_ = has_wide_ || record.wide();
+    if (!record.wide())
+      partial_size_ += static_cast<std::size_t>(blocks_of(record) - 1) *
+                       static_cast<std::size_t>(order) * order_pitch;
     square_size_ += static_cast<std::size_t>(order) * order_pitch;
     vector_size_ += order_pitch;
     block_count_ += static_cast<std::size_t>(blocks_of(record));
@@ -61,19 +66,25 @@ Grid per_block(const Batch& batch) {
   return {.x = static_cast<std::size_t>(batch.active_blocks())};
 }
 
-int vector_width(const Device& device) {
-  // A width of 16 is not a width of doubles anywhere; powers of two only.
-  return static_cast<int>(
-      std::bit_floor(static_cast<unsigned>(std::clamp(device.info().vector_width, 1, 8))));
+Grid per_row(const Batch& batch) {
+  return {.x = static_cast<std::size_t>(batch.largest_order_pitch()), .y = batch.active().size()};
 }
 
-Defines common_defines(const Device& device) {
+int vector_width(const Device& device, NumberType type) {
+  // A width of 16 is not a width of doubles anywhere; powers of two only. Where vectors help at
+  // all, they hold twice as many floats.
+  const int doubles = static_cast<int>(
+      std::bit_floor(static_cast<unsigned>(std::clamp(device.info().vector_width, 1, 8))));
+  return type == NumberType::float32 && doubles > 1 ? 2 * doubles : doubles;
+}
+
+Defines common_defines(const Device& device, NumberType type) {
   if (!device.info().fp64)
     throw DeviceError("device '" + device.info().name +
                       "' has no double precision (cl_khr_fp64), which this solver needs; choose "
                       "another with --device, or --backend reference");
-  return {{"REAL", "double"},
-          {"VW", std::to_string(vector_width(device))},
+  return {{"REAL", type == NumberType::float64 ? "double" : "float"},
+          {"VW", std::to_string(vector_width(device, type))},
           {"BLOCK_ROWS", std::to_string(block_rows)}};
 }
 

@@ -9,14 +9,16 @@
 
 namespace moclean {
 
-/// Rows of a segment that one work-item handles in a sweep; reaches the kernels as BLOCK_ROWS.
-inline constexpr int block_rows = 32;
+/// Most rows of a segment that one work-item handles in a sweep; reaches the kernels as BLOCK_ROWS.
+/// Each block but the first of a segment has a Gram matrix of its own until they are summed.
+inline constexpr int block_rows = 256;
 
 /// Where a segment lies in device memory; mirrors segment_t of kernels/prelude.cl.
 struct SegmentRecord {
   std::int64_t first_row = 0;  ///< in the stacked matrices
   std::int64_t square = 0;     ///< offset of its order x order matrices, in reals
   std::int64_t vector = 0;     ///< offset of its vectors of `order` entries, in reals
+  std::int64_t partial = 0;  ///< offset of the Gram matrices of all blocks but its first, in reals
   std::int32_t rows = 0;
   std::int32_t columns = 0;
   std::int32_t pitch = 0;
@@ -27,7 +29,7 @@ struct SegmentRecord {
   /// Fewer rows than columns: the Gram matrix is XX', and A = WX.
   bool wide() const { return rows < columns; }
 };
-static_assert(sizeof(SegmentRecord) == 48);
+static_assert(sizeof(SegmentRecord) == 56);
 
 /// One block of rows of a segment; mirrors block_t of kernels/prelude.cl.
 struct BlockRecord {
@@ -51,6 +53,11 @@ class Batch {
   std::size_t square_size() const { return square_size_; }    ///< reals of all square matrices
   std::size_t vector_size() const { return vector_size_; }    ///< reals of all vectors
   std::size_t block_count() const { return block_count_; }    ///< blocks of all segments
+  std::size_t partial_size() const {
+    return partial_size_;
+  }                                                     ///< reals of the partial Gram matrices
+  bool has_wide() const { return has_wide_; }           ///< any with fewer rows than columns
+  int pitch() const { return records_.front().pitch; }  ///< of the stacked matrices
   int largest_order_pitch() const { return largest_order_pitch_; }
 
   /// Leaves only these segments (increasing indices) in the launches from now on.
@@ -69,6 +76,8 @@ class Batch {
   std::vector<SegmentRecord> records_;
   std::vector<std::int32_t> active_;
   std::size_t stacked_size_ = 0, square_size_ = 0, vector_size_ = 0, block_count_ = 0;
+  std::size_t partial_size_ = 0;
+  bool has_wide_ = false;
   int largest_order_pitch_ = 0;
   std::int32_t active_blocks_ = 0;
   Buffer<SegmentRecord> device_segments_;
@@ -80,11 +89,23 @@ class Batch {
 Grid per_segment(const Batch& batch);
 Grid per_block(const Batch& batch);
 
-/// Reals in the explicit vectors of our kernels on this device: 1, 2, 4 or 8; reaches them as VW.
-int vector_width(const Device& device);
+/// Launch with one work-item per row of the largest square matrix and active segment.
+Grid per_row(const Batch& batch);
+
+/// Number type of the stacked matrices a kernel works on.
+enum class NumberType { float64, float32 };
+
+template <class Real>
+inline constexpr NumberType number_type = sizeof(Real) == sizeof(double) ? NumberType::float64
+                                                                         : NumberType::float32;
+
+/// Numbers in the explicit vectors of our kernels on this device, a power of two up to 8 (16 for
+/// float32); reaches them as VW.
+int vector_width(const Device& device, NumberType type = NumberType::float64);
 
 /// -D options every kernel of ours needs on this device: REAL, VW, BLOCK_ROWS.
-/// Throws DeviceError if the device has no double precision.
-Defines common_defines(const Device& device);
+/// Throws DeviceError if the device has no double precision, which every solver needs for the
+/// eigenproblem whatever the type of its stacked matrices.
+Defines common_defines(const Device& device, NumberType type = NumberType::float64);
 
 }  // namespace moclean

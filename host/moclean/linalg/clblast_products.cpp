@@ -108,7 +108,7 @@ ClblastProducts::ClblastProducts(const Device& device)
       program_(device, kernel_source::scale_rows, common_defines(device)),
       scale_rows_(program_, "scale_rows") {}
 
-void ClblastProducts::gram(const Batch& batch, const Buffer<double>& x, Buffer<double>& g) {
+void ClblastProducts::gram(const Batch& batch, const Buffer<double>& x, Buffer<double>& g, GramOf) {
   const auto groups = group_by_shape(batch, [](const SegmentRecord& s) {
     return std::tuple(stacked_offset(s), stacked_offset(s), square_offset(s));
   });
@@ -125,8 +125,9 @@ void ClblastProducts::gram(const Batch& batch, const Buffer<double>& x, Buffer<d
 }
 
 void ClblastProducts::reconstruct(const Batch& batch, const Buffer<double>& z,
-                                  const Buffer<double>& f, Buffer<double>& w) {
-  if (scaled_.size() < batch.square_size()) scaled_ = Buffer<double>(*device_, batch.square_size());
+                                  const Buffer<double>& f, const Buffer<std::int32_t>&,
+                                  Buffer<double>& w) {
+  grow(scaled_, *device_, batch.square_size());
   const Grid rows{.x = static_cast<std::size_t>(batch.largest_order_pitch()),
                   .y = static_cast<std::size_t>(batch.active_count())};
   scale_rows_(rows, batch.device_segments(), batch.device_active(), z, f, scaled_);

@@ -4,14 +4,15 @@
 
 namespace moclean {
 
-/// Norms of the active segments of a stacked matrix (kernels/norms.cl), each summed in an order
-/// that depends on the segment alone.
+/// Norms of the active segments of a stacked matrix of Real (kernels/norms.cl), each summed in an
+/// order that depends on the segment alone.
+template <class Real>
 class Norms {
  public:
   explicit Norms(const Device& device);
 
   /// frobenius[b] = |X_b|_F and largest[b] = max |X_b,ij|; one entry per segment. Does not wait.
-  void operator()(const Batch& batch, const Buffer<double>& x, Buffer<double>& frobenius,
+  void operator()(const Batch& batch, const Buffer<Real>& x, Buffer<double>& frobenius,
                   Buffer<double>& largest);
 
  private:

@@ -1,28 +1,28 @@
 #pragma once
 
-#include <string>
 #include <variant>
 
 #include "moclean/linalg/batch.hpp"
+#include "moclean/linalg/tuning.hpp"
 
 namespace moclean {
 
-/// Who computes the matrix products.
-enum class ProductPath { own, clblast };
+/// -D options of the programs that use kernels/tiles.cl.
+Defines product_defines(const Device& device, NumberType type = NumberType::float64,
+                        const Tuning& tuning = {});
 
-std::string to_string(ProductPath path);
-
-/// Reads `own` or `clblast`; throws ArgumentError for anything else.
-ProductPath parse_product_path(const std::string& text);
+/// Which segments a Gram matrix is wanted of; `wide` permits to leave out the others.
+enum class GramOf { all, wide };
 
 /// Products of our own kernels (kernels/products.cl).
 class OwnProducts {
  public:
-  explicit OwnProducts(const Device& device);
+  explicit OwnProducts(const Device& device, const Tuning& tuning = {});
 
-  void gram(const Batch& batch, const Buffer<double>& x, Buffer<double>& g);
+  void gram(const Batch& batch, const Buffer<double>& x, Buffer<double>& g,
+            GramOf which = GramOf::all);
   void reconstruct(const Batch& batch, const Buffer<double>& z, const Buffer<double>& f,
-                   Buffer<double>& w);
+                   const Buffer<std::int32_t>& terms, Buffer<double>& w);
   void apply(const Batch& batch, const Buffer<double>& x, const Buffer<double>& w,
              Buffer<double>& a);
   void rotate(const Batch& batch, const Buffer<double>& x, const Buffer<double>& z,
@@ -31,8 +31,10 @@ class OwnProducts {
                Buffer<double>& c);
 
  private:
+  Grid square_tiles(const Batch& batch) const;
+
   const Device* device_;
-  int vector_width_;
+  std::size_t tile_rows_, tile_columns_;
   Program program_;
   Kernel gram_, reconstruct_, apply_, compose_, basis_;
   Buffer<double> basis_matrices_;
@@ -43,9 +45,10 @@ class ClblastProducts {
  public:
   explicit ClblastProducts(const Device& device);
 
-  void gram(const Batch& batch, const Buffer<double>& x, Buffer<double>& g);
+  void gram(const Batch& batch, const Buffer<double>& x, Buffer<double>& g,
+            GramOf which = GramOf::all);
   void reconstruct(const Batch& batch, const Buffer<double>& z, const Buffer<double>& f,
-                   Buffer<double>& w);
+                   const Buffer<std::int32_t>& terms, Buffer<double>& w);
   void apply(const Batch& batch, const Buffer<double>& x, const Buffer<double>& w,
              Buffer<double>& a);
   void rotate(const Batch& batch, const Buffer<double>& x, const Buffer<double>& z,
@@ -63,20 +66,22 @@ class ClblastProducts {
 /// The products of an iteration, for the active segments of a batch. X, A and B are stacked
 /// matrices, G, Z, P, C and W are square matrices of size `order`, f is a vector.
 ///   gram         G = X'X (XX' for a wide segment); at least the upper triangle is written
-///   reconstruct  W = sum_k f_k z_k z_k', z_k the rows of Z, f_k >= 0
+///   reconstruct  W = sum_k f_k z_k z_k', z_k the rows of Z, f_k >= 0, over the first terms[b] rows
+///                (f is zero past them); W may be left as it is where terms[b] is 0
 ///   apply        A = XW (WX for a wide segment)
 ///   rotate       B = XZ' (ZX for a wide segment): X expressed in the rows of Z
 ///   compose      C = PZ
 /// All are enqueued, none waits. The result for a segment does not depend on its neighbours.
 class Products {
  public:
-  Products(ProductPath path, const Device& device);
+  Products(ProductPath path, const Device& device, const Tuning& tuning = {});
 
   ProductPath path() const { return path_; }
 
-  void gram(const Batch& batch, const Buffer<double>& x, Buffer<double>& g);
+  void gram(const Batch& batch, const Buffer<double>& x, Buffer<double>& g,
+            GramOf which = GramOf::all);
   void reconstruct(const Batch& batch, const Buffer<double>& z, const Buffer<double>& f,
-                   Buffer<double>& w);
+                   const Buffer<std::int32_t>& terms, Buffer<double>& w);
   void apply(const Batch& batch, const Buffer<double>& x, const Buffer<double>& w,
              Buffer<double>& a);
   void rotate(const Batch& batch, const Buffer<double>& x, const Buffer<double>& z,

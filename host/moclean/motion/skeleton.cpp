@@ -1,5 +1,7 @@
 #include "moclean/motion/skeleton.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -44,34 +46,98 @@ std::vector<Step> plan_steps(const Skeleton& skeleton) {
   return steps;
 }
 
-// turn <- turn * R(axis, angle): only two columns change.
-void rotate(Eigen::Matrix3d& turn, int axis, double angle) {
-  const double c = std::cos(angle), s = std::sin(angle);
-  const int i = (axis + 1) % 3, j = (axis + 2) % 3;
-  const Eigen::Vector3d old = turn.col(i);
-  turn.col(i) = c * old + s * turn.col(j);
-  turn.col(j) = c * turn.col(j) - s * old;
-}
+// Frames are computed several side by side, a number of each in a lane of a vector register. Every
+// lane does what a single frame would, in the same order.
+constexpr Index lanes = 4;
+using Lanes = Eigen::Array<double, lanes, 1>;
+using LaneVector = std::array<Lanes, 3>;
 
 struct Pose {
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d base = Eigen::Vector3d::Zero();
+  LaneVector base = {Lanes::Zero(), Lanes::Zero(), Lanes::Zero()};
+  std::array<LaneVector, 3> turn = {{{Lanes::Ones(), Lanes::Zero(), Lanes::Zero()},
+                                     {Lanes::Zero(), Lanes::Ones(), Lanes::Zero()},
+                                     {Lanes::Zero(), Lanes::Zero(), Lanes::Ones()}}};  // columns
 };
 
-// Reads the step's channels at `value` and leaves `value` behind them.
-Pose pose_of(const Step& step, const Pose& parent, const double*& value) {
-  Pose pose;
-  pose.base = parent.base + parent.turn * step.shift;
-  pose.turn = step.between_is_identity ? parent.turn : parent.turn * step.between;
-  const Eigen::Matrix3d frame = pose.turn;
-  for (const Channel channel : *step.channels) {
-    if (is_translation(channel))
-      pose.base += *value * frame.col(axis_of(channel));
-    else
-      rotate(pose.turn, axis_of(channel), *value);
-    ++value;
+// turn * vector, component by component.
+Lanes row_times(const std::array<LaneVector, 3>& turn, std::size_t row,
+                const Eigen::Vector3d& vector) {
+  return turn[0][row] * vector[0] + turn[1][row] * vector[1] + turn[2][row] * vector[2];
+}
+
+// turn <- turn * R(axis, angle): only two columns change.
+void rotate(std::array<LaneVector, 3>& turn, int axis, const Lanes& angle) {
+  Lanes c, s;
+  for (Index lane = 0; lane < lanes; ++lane) {
+    c[lane] = std::cos(angle[lane]);
+    s[lane] = std::sin(angle[lane]);
+  }
+  LaneVector& a = turn[static_cast<std::size_t>(axis + 1) % 3];
+  LaneVector& b = turn[static_cast<std::size_t>(axis + 2) % 3];
+  for (std::size_t row = 0; row < 3; ++row) {
+    const Lanes old = a[row];
+    a[row] = c * old + s * b[row];
+    b[row] = c * b[row] - s * old;
+  }
+}
+
+// The frames of one pass: where their numbers are, and where their joints go. The last pass repeats
+// the last frame where there are too few.
+struct Frames {
+  std::array<const double*, lanes> values;
+  std::array<double*, lanes> joints;
+
+  Lanes value(Index channel) const {
+    Lanes all;
+    for (Index lane = 0; lane < lanes; ++lane)
+      all[lane] = values[static_cast<std::size_t>(lane)][channel];
+    return all;
+  }
+
+  void place(std::size_t bone, const LaneVector& position) const {
+    for (std::size_t lane = 0; lane < lanes; ++lane)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        joints[lane][3 * bone + axis] = position[axis][static_cast<Index>(lane)];
+  }
+};
+
+// Reads the step's channels from `channel` on and leaves it behind them.
+Pose pose_of(const Step& step, const Pose& parent, const Frames& frames, Index& channel) {
+  Pose pose = parent;
+  for (std::size_t row = 0; row < 3; ++row) {
+    pose.base[row] += row_times(parent.turn, row, step.shift);
+    if (step.between_is_identity) continue;
+    for (Index column = 0; column < 3; ++column)
+      pose.turn[static_cast<std::size_t>(column)][row] =
+          row_times(parent.turn, row, step.between.col(column));
+  }
+  const std::array<LaneVector, 3> frame = pose.turn;
+  for (const Channel kind : *step.channels) {
+    const Lanes value = frames.value(channel++);
+    const int axis = axis_of(kind);
+    if (!is_translation(kind)) {
+      rotate(pose.turn, axis, value);
+      continue;
+    }
+    for (std::size_t row = 0; row < 3; ++row)
+      pose.base[row] += value * frame[static_cast<std::size_t>(axis)][row];
   }
   return pose;
+}
+
+void place_joints(const std::vector<Step>& steps, const Frames& frames, std::vector<Pose>& poses) {
+  const Pose world;
+  Index channel = 0;
+  for (std::size_t b = 0; b < steps.size(); ++b) {
+    const Step& step = steps[b];
+    const Pose& parent = step.parent < 0 ? world : poses[static_cast<std::size_t>(step.parent)];
+    poses[b] = pose_of(step, parent, frames, channel);
+    LaneVector joint = poses[b].base;
+    if (step.has_tail)
+      for (std::size_t row = 0; row < 3; ++row)
+        joint[row] += row_times(poses[b].turn, row, step.tail);
+    frames.place(b, joint);
+  }
 }
 
 }  // namespace
@@ -87,20 +153,16 @@ Matrix forward_kinematics(const Skeleton& skeleton, const Matrix& motion) {
     throw ShapeError(fmt::format("the motion has {} numbers per frame, its skeleton {} channels",
                                  motion.cols(), skeleton.channels()));
   const std::vector<Step> steps = plan_steps(skeleton);
-  const Pose world;
   std::vector<Pose> poses(steps.size());
   Matrix positions(motion.rows(), static_cast<Index>(3 * steps.size()));
-  for (Index frame = 0; frame < motion.rows(); ++frame) {
-    const double* value = motion.data() + frame * motion.cols();
-    double* out = positions.data() + frame * positions.cols();
-    for (std::size_t b = 0; b < steps.size(); ++b, out += 3) {
-      const Step& step = steps[b];
-      const Pose& parent = step.parent < 0 ? world : poses[static_cast<std::size_t>(step.parent)];
-      poses[b] = pose_of(step, parent, value);
-      Eigen::Map<Eigen::Vector3d> joint(out);
-      joint = poses[b].base;
-      if (step.has_tail) joint += poses[b].turn * step.tail;
+  for (Index first = 0; first < motion.rows(); first += lanes) {
+    Frames frames;
+    for (Index lane = 0; lane < lanes; ++lane) {
+      const Index frame = std::min(first + lane, motion.rows() - 1);
+      frames.values[static_cast<std::size_t>(lane)] = motion.row(frame).data();
+      frames.joints[static_cast<std::size_t>(lane)] = positions.row(frame).data();
     }
+    place_joints(steps, frames, poses);
   }
   return positions;
 }

@@ -2,39 +2,55 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "moclean/device/device.hpp"
+#include "moclean/linalg/precision.hpp"
 #include "moclean/linalg/products.hpp"
 #include "moclean/solve/backend.hpp"
 
 namespace moclean {
 
 struct OpenClOptions {
-  ProductPath products = ProductPath::own;
+  std::optional<ProductPath> products = {};  ///< overrides that of `tuning`
+  Precision precision = Precision::f64;
   /// Bytes of device memory one batch may take; larger input is solved in several batches. 0: three
   /// quarters of the device's memory.
   std::uint64_t memory_limit = 0;
+  std::optional<Tuning> tuning = {};  ///< default_tuning() of the device if empty
 };
 
-/// Solves every segment of a batch at once on an OpenCL device, in double precision.
+/// Smallest tolerance that float matrices are sure to reach.
+inline constexpr double mixed_tolerance = 1e-6;
+
+/// Solves every segment of a batch at once on an OpenCL device.
 /// Throws DeviceError if the device has no double precision.
 class OpenClBackend final : public Backend {
  public:
-  /// `device` has to outlive the backend. Compiles the kernels.
+  /// `device` has to outlive the backend. Compiles the kernels. Throws ArgumentError for a tuning
+  /// out of its range, and for `products` of CLBlast in mixed precision; a `tuning` that asks for
+  /// them gets our own there.
   explicit OpenClBackend(const Device& device, const OpenClOptions& options = {});
   ~OpenClBackend() override;
 
   std::string name() const override;
 
-  /// See Backend. Also throws DeviceError if one segment alone exceeds the memory limit.
+  /// The choices in use.
+  const Tuning& tuning() const { return tuning_; }
+
+  /// See Backend. Also throws DeviceError if one segment alone exceeds the memory limit, and
+  /// ArgumentError for a tolerance below mixed_tolerance in mixed precision.
   Solution solve(const SegmentBatch& data, const Method& method,
                  const Monitor& monitor = {}) override;
 
  private:
   struct Solvers;  // compiled kernels of each method
 
+  void require_reachable(const RobustPca& method) const;
+
   const Device& device_;
   OpenClOptions options_;
+  Tuning tuning_;
   std::unique_ptr<Solvers> solvers_;
 };
 

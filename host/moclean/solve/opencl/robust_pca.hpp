@@ -3,36 +3,25 @@
 #include <functional>
 #include <stop_token>
 
-#include "moclean/linalg/eigen.hpp"
+#include "moclean/linalg/eigensolver.hpp"
 #include "moclean/linalg/norms.hpp"
 #include "moclean/linalg/products.hpp"
 #include "moclean/solve/backend.hpp"
+#include "moclean/solve/opencl/robust_pca_memory.hpp"
 
 namespace moclean::opencl {
 
-/// Scalars of one segment's iteration; mirrors state_t of kernels/robust_pca.cl.
-struct SegmentState {
-  double mu = 0;
-  double mu_next = 0;
-  double mu_max = 0;
-  double lambda = 0;
-  double dual_scale = 0;
-  double residual = 0;
-  std::int32_t iterations = 0;
-  std::int32_t rank = 0;
-  std::int32_t converged = 0;
-  std::int32_t order_ea = 0;
-};
-static_assert(sizeof(SegmentState) == 64);
-
 /// Robust PCA of many segments at once on a device; the steps are those of
-/// solve/reference/robust_pca.cpp, in the same order.
+/// solve/reference/robust_pca.cpp, in the same order. The stacked matrices are of type Real: with
+/// float, Gram matrix and eigenproblem are double all the same, and a tolerance of 1e-6 is reached.
+template <class Real>
 class RobustPcaSolver {
  public:
-  RobustPcaSolver(const Device& device, ProductPath products);
+  /// Throws ArgumentError for a tuning out of its range.
+  RobustPcaSolver(const Device& device, const Tuning& tuning);
 
   /// Bytes of device memory a segment of this size takes.
-  static std::uint64_t memory_of(Index rows, Index columns);
+  std::uint64_t memory_of(Index rows, Index columns, const RobustPca& method) const;
 
   /// Called with the number of segments that finished since the last call.
   using Finished = std::function<void(Index)>;
@@ -42,18 +31,32 @@ class RobustPcaSolver {
              Solution& solution, const Finished& finished, const std::stop_token& stop);
 
  private:
-  struct Memory;
+  using Memory = RobustPcaMemory<Real>;
+  static constexpr bool mixed = Memory::mixed;
 
+  static bool graded(double tau);
   void start(const Batch& batch, Memory& m, const RobustPca& method);
-  void decompose(const Batch& batch, Memory& m, double tau);
-  void iterate(const Batch& batch, Memory& m, const RobustPca& method, double tau);
+  void gram(const Batch& batch, Memory& m, const Buffer<Real>& x, Buffer<double>& g);
+  void sum_partial_grams(const Batch& batch, Memory& m, Buffer<double>& g);
+  void decompose(const Batch& batch, Memory& m, const RobustPca& method);
+  void threshold(const Batch& batch, Memory& m, bool low_rank_permitted);
+  void sweep(const Batch& batch, Memory& m, bool with_gram);
+  void narrow(const Batch& batch, Memory& m, bool always_w);
+  void apply_and_shrink(const Batch& batch, Memory& m, bool with_gram);
+  void iterate(const Batch& batch, Memory& m, const RobustPca& method);
+  void retire(Batch& batch, Memory& m, const Finished& finished);
+  int iterations_until_next_look(const Batch& batch, const Memory& m,
+                                 const RobustPca& method) const;
 
   const Device& device_;
+  int sweep_rows_;
   Products products_;
-  SymmetricEigen eigen_;
-  Norms norms_;
-  Program program_;
-  Kernel start_state_, start_, threshold_, shrink_, advance_;
+  Eigensolver eigen_;
+  Norms<Real> norms_;
+  Program steps_, sweeps_, grams_;
+  Kernel start_state_, threshold_, advance_;                          // of steps_
+  Kernel start_, sweep_, shrink_, finish_;                            // of sweeps_
+  Kernel sum_grams_, gram_of_floats_, gram_of_wide_floats_, narrow_;  // of grams_
 };
 
 }  // namespace moclean::opencl

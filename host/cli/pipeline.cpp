@@ -1,0 +1,195 @@
+#include "cli/pipeline.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "moclean/core/error.hpp"
+#include "moclean/solve/reference/reference_backend.hpp"
+
+#include "cli/process_memory.hpp"
+#include "cli/progress_line.hpp"
+#include "cli/result_writer.hpp"
+#include "cli/take_reader.hpp"
+
+namespace moclean::cli {
+namespace {
+
+// Copies of a take's samples, at most: read 1, stacked 1, solved 2, unstacked 2 and their padding;
+// with --verify two more while the reference works. Written they are 2.
+constexpr std::uint64_t copies_solving = 7, copies_verifying = 9, copies_writing = 2;
+
+GroupRules rules_of(const Job& job) {
+  constexpr Index segments_per_unit = 32;
+  GroupRules rules{.segmentation = job.options.segmentation};
+  rules.full_segments = std::max(rules.least_segments, segments_per_unit * job.compute_units);
+  rules.copies = job.options.verify ? copies_verifying : copies_solving;
+  return rules;
+}
+
+std::uint64_t host_limit(const DenoiseOptions& options) {
+  if (!options.overlap) return std::numeric_limits<std::uint64_t>::max();
+  return options.memory_limit - device_share(options.memory_limit);
+}
+
+AgreementBounds agreement_bounds(const DenoiseOptions& options) {
+  return options.precision == Precision::mixed ? mixed_agreement_bounds : AgreementBounds{};
+}
+
+void require_going(const std::stop_token& stop) {
+  if (stop.stop_requested()) throw Cancelled();
+}
+
+// One way to solve groups, with its line of progress.
+class Solver {
+ public:
+  Solver(const Job& job, Backend& backend, const std::stop_token& stop, const char* task)
+      : stop_(stop),
+        denoiser_(job.options.segmentation, job.options.method, backend),
+        line_(task, !job.options.quiet) {}
+
+  std::vector<Denoised> solve(const TakeGroup& group, Index expected_segments, bool is_last) {
+    const BusyClock::Work work(clock_);
+    const Monitor monitor{
+        .report =
+            [&](const Progress& own) {
+              line_.show({.finished = finished_ + own.finished, .total = expected_segments},
+                         is_last ? ProgressTotal::exact : ProgressTotal::estimated);
+            },
+        .stop = stop_};
+    auto results = denoiser_.denoise(group.clips, monitor);
+    require_going(stop_);
+    finished_ += group.segments;
+    return results;
+  }
+
+  double seconds() const { return clock_.seconds(); }
+
+ private:
+  std::stop_token stop_;
+  LowRankDenoiser denoiser_;
+  ProgressLine line_;
+  BusyClock clock_;
+  Index finished_ = 0;  // segments of the groups before
+};
+
+// The stages of a run and what they have produced so far.
+class Run {
+ public:
+  Run(const Job& job, Backend& backend, const std::stop_token& stop)
+      : job_(job),
+        stop_(stop),
+        budget_(host_limit(job.options)),
+        writer_(job.plan, job.options.jobs),
+        reader_(job.files, job.options.reading, rules_of(job), job.options.jobs, budget_, stop),
+        solver_(job, backend, stop, "solving") {
+    if (!job.options.verify) return;
+    reference_.emplace(job.options.jobs);
+    verifier_.emplace(job, *reference_, stop, "verifying");
+  }
+
+  RunReport report() {
+    job_.options.overlap ? overlapped() : one_after_the_other();
+    writer_.finish();
+    require_going(stop_);
+    writer_.commit();
+    for (std::size_t i = 0; i < report_.takes.size(); ++i)
+      report_.takes[i].write_seconds = writer_.seconds(i);
+    report_.seconds = {.read = reader_.seconds(),
+                       .solve = solver_.seconds(),
+                       .write = writer_.seconds(),
+                       .total = all_.seconds()};
+    report_.peak_memory = peak_memory();
+    return std::move(report_);
+  }
+
+ private:
+  void overlapped() {
+    for (TakeGroup group = reader_.next(); !group.clips.empty(); group = reader_.next())
+      put(group, solved(group));
+  }
+
+  void one_after_the_other() {
+    std::vector<TakeGroup> groups;
+    while (!reader_.at_end()) groups.push_back(reader_.next());
+    std::vector<std::vector<Denoised>> results;
+    for (const TakeGroup& group : groups) results.push_back(solved(group));
+    for (std::size_t g = 0; g < groups.size(); ++g) put(groups[g], std::move(results[g]));
+  }
+
+  std::vector<Denoised> solved(const TakeGroup& group) {
+    const Index expected = reader_.expected_segments();
+    auto results = solved_by_device(group, expected);
+    for (std::size_t i = 0; i < results.size(); ++i)
+      report_.takes.push_back({.file = job_.files[group.first + i],
+                               .frames = results[i].clip.frames(),
+                               .columns = results[i].clip.samples.cols(),
+                               .read_seconds = group.read_seconds[i],
+                               .solve_seconds = results[i].solve_seconds,
+                               .write_seconds = 0,
+                               .segments = results[i].segments,
+                               .verification = {}});
+    if (verifier_) verify(group, results, verifier_->solve(group, expected, reader_.at_end()));
+    ++report_.groups;
+    return results;
+  }
+
+  // A take that needs more than the device's share of the memory is alone in its group.
+  std::vector<Denoised> solved_by_device(const TakeGroup& group, Index expected_segments) {
+    try {
+      return solver_.solve(group, expected_segments, reader_.at_end());
+    } catch (const DeviceError& error) {
+      if (group.clips.size() > 1) throw;
+      throw DeviceError(fmt::format("{}: {}", job_.files[group.first].string(), error.what()));
+    }
+  }
+
+  void verify(const TakeGroup& group, const std::vector<Denoised>& results,
+              const std::vector<Denoised>& expected) {
+    std::string failures;
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      TakeReport& take = report_.takes[group.first + i];
+      const Matrix difference = results[i].clip.samples - expected[i].clip.samples;
+      const AgreementBounds bounds = agreement_bounds(job_.options);
+      take.verification = {agreement(results[i], expected[i]), bounds,
+                           difference.cwiseAbs().maxCoeff()};
+      if (!within(take.verification->agreement, bounds)) failures += "\n" + agreement_line(take);
+    }
+    if (!failures.empty())
+      throw Error("not verified, nothing was written; the device and the reference differ:" +
+                  failures);
+  }
+
+  void put(TakeGroup& group, std::vector<Denoised> results) {
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      group.clips[i] = {};
+      group.memory[i].resize(group.memory[i].bytes() / rules_of(job_).copies * copies_writing);
+      writer_.put({.index = group.first + i,
+                   .clip = std::move(results[i].clip),
+                   .outliers = std::move(results[i].outliers),
+                   .memory = std::move(group.memory[i])});
+    }
+  }
+
+  const Job& job_;
+  std::stop_token stop_;
+  BusyClock clock_;
+  const BusyClock::Work all_{clock_};  // reading begins when the reader is made
+  RunReport report_;
+  MemoryBudget budget_;
+  ResultWriter writer_;
+  TakeReader reader_;
+  Solver solver_;
+  std::optional<ReferenceBackend> reference_;
+  std::optional<Solver> verifier_;
+};
+
+}  // namespace
+
+RunReport run_pipeline(const Job& job, Backend& backend, const std::stop_token& stop) {
+  return Run(job, backend, stop).report();
+}
+
+}  // namespace moclean::cli

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "moclean/denoise/agreement.hpp"
+#include "moclean/denoise/denoiser.hpp"
+
+namespace moclean::cli {
+
+/// What --verify found for one take.
+struct Verification {
+  Agreement agreement;
+  AgreementBounds bounds;         ///< what it was to keep
+  double largest_difference = 0;  ///< of any entry of the motion, in the unit of the clip
+};
+
+/// One take of a run of `moclean denoise`.
+struct TakeReport {
+  std::filesystem::path file;
+  Index frames = 0;
+  Index columns = 0;
+  double read_seconds = 0;
+  double solve_seconds = 0;
+  double write_seconds = 0;
+  std::vector<DenoisedSegment> segments;  ///< first_frame counts from the first frame used
+  std::optional<Verification> verification;
+
+  /// Frames per second of solving; 0 if it took no measurable time.
+  double frames_per_second() const;
+};
+
+/// Wall time during which a stage was at work, on any thread. Stages overlap, so that the total may
+/// be less than their sum.
+struct StageSeconds {
+  double read = 0;
+  double solve = 0;
+  double write = 0;
+  double total = 0;
+};
+
+/// A whole run.
+struct RunReport {
+  std::vector<TakeReport> takes;  ///< in the order of the files
+  StageSeconds seconds;
+  Index groups = 0;               ///< of takes that were solved together
+  std::uint64_t peak_memory = 0;  ///< bytes, of the whole process
+};
+
+/// What --verify found, in one line that starts with the file's name.
+std::string agreement_line(const TakeReport& take);
+
+}  // namespace moclean::cli

@@ -1,0 +1,59 @@
+#include "moclean/linalg/tuning.hpp"
+
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "moclean/core/error.hpp"
+
+namespace moclean {
+namespace {
+
+void require(const char* name, std::int64_t value, std::int64_t least, std::int64_t most) {
+  if (value < least || value > most)
+    throw ArgumentError(
+        fmt::format("tuning: {} is {}, expected {} to {}", name, value, least, most));
+}
+
+}  // namespace
+
+std::string to_string(ProductPath path) { return path == ProductPath::own ? "own" : "clblast"; }
+
+ProductPath parse_product_path(const std::string& text) {
+  if (text == "own") return ProductPath::own;
+  if (text == "clblast") return ProductPath::clblast;
+  throw ArgumentError("products are computed by own or clblast, not by '" + text + "'");
+}
+
+std::string to_string(EigenForm form) { return form == EigenForm::lanes ? "lanes" : "group"; }
+
+EigenForm parse_eigen_form(const std::string& text) {
+  if (text == "lanes") return EigenForm::lanes;
+  if (text == "group") return EigenForm::group;
+  throw ArgumentError("the eigensolver's form is lanes or group, not '" + text + "'");
+}
+
+void check(const Tuning& tuning) {
+  require("tile_rows", tuning.tile_rows, 1, 16);
+  require("tile_vectors", tuning.tile_vectors, 1, 8);
+  require("sweep_rows", tuning.sweep_rows, 1, 256);
+  require("panel", tuning.panel, 1, 16);
+  require("batch_segments", tuning.batch_segments, 0, std::numeric_limits<std::int32_t>::max());
+}
+
+Tuning default_tuning(const DeviceInfo& device) {
+  return {.eigen = device.kind == DeviceKind::gpu ? EigenForm::group : EigenForm::lanes};
+}
+
+bool same_bits(const Tuning& a, const Tuning& b) {
+  return a.products == b.products && a.eigen == b.eigen;
+}
+
+std::string to_string(const Tuning& tuning) {
+  return fmt::format("tile {} x {}, sweep {} rows, panel {}, products {}, eigensolver {}, batch {}",
+                     tuning.tile_rows, tuning.tile_vectors, tuning.sweep_rows, tuning.panel,
+                     to_string(tuning.products), to_string(tuning.eigen),
+                     tuning.batch_segments > 0 ? std::to_string(tuning.batch_segments) : "any");
+}
+
+}  // namespace moclean

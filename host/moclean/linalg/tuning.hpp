@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "moclean/device/device.hpp"
+
+namespace moclean {
+
+/// Who computes the matrix products.
+enum class ProductPath { own, clblast };
+
+std::string to_string(ProductPath path);
+
+/// Reads `own` or `clblast`; throws ArgumentError for anything else.
+ProductPath parse_product_path(const std::string& text);
+
+/// How the eigensolver divides its work: matrices in the lanes of vectors (SymmetricEigen), or a
+/// work-group per matrix (GroupEigen).
+enum class EigenForm { lanes, group };
+
+std::string to_string(EigenForm form);
+
+/// Reads `lanes` or `group`; throws ArgumentError for anything else.
+EigenForm parse_eigen_form(const std::string& text);
+
+/// Choices that make the solver faster or slower on a device. The defaults are those of a CPU.
+///
+/// tile_rows, tile_vectors, sweep_rows, panel and batch_segments leave every bit of A and E as it
+/// is: each entry is summed in the same order whatever their values. Only the reported residual,
+/// a sum over tiles, may change in its last digits. products and eigen round differently; results
+/// agree within the bounds of moclean/denoise/agreement.hpp.
+struct Tuning {
+  int tile_rows = 8;     ///< of a register tile, 1 .. 16
+  int tile_vectors = 3;  ///< across a register tile, 1 .. 8
+  /// Rows from the product A = XW of a sweep to their part of the Gram matrix, 1 .. 256: with the
+  /// columns of W, 32 rows fill a first-level cache of 32 KiB.
+  int sweep_rows = 32;
+  /// Vectors of columns of the eigenvectors that one work-item transforms (lanes only), 1 .. 16:
+  /// 4 x 8 columns of 93 rows fill three quarters of that cache.
+  int panel = 4;
+  ProductPath products = ProductPath::own;
+  EigenForm eigen = EigenForm::lanes;
+  /// Most segments of a batch, as far as they fit the memory; 0: as many as suit the device's
+  /// memory and, on a CPU, its cache.
+  std::int64_t batch_segments = 0;
+
+  bool operator==(const Tuning&) const = default;
+};
+
+/// Throws ArgumentError naming the first choice out of its range.
+void check(const Tuning& tuning);
+
+/// What is sound on a device before anything was measured: the eigensolver's group form on a GPU.
+Tuning default_tuning(const DeviceInfo& device);
+
+/// Whether two tunings give the same bits of A and E: the same products and form of eigensolver.
+bool same_bits(const Tuning& a, const Tuning& b);
+
+/// One line: `tile 8 x 3, sweep 32 rows, panel 4, products own, eigensolver lanes, batch any`.
+std::string to_string(const Tuning& tuning);
+
+}  // namespace moclean

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <optional>
+
+#include "moclean/device/device.hpp"
+
+namespace moclean {
+
+/// Builds `programs` for the largest work-group of a power of two up to `wanted` work-items that
+/// the device can run all their kernels with, and returns it. `Programs(device, work_group)` builds
+/// them, `largest_group()` tells what they can run with.
+template <class Programs>
+int fit_work_group(std::optional<Programs>& programs, const Device& device, int wanted) {
+  auto size = std::bit_floor(
+      std::min(static_cast<std::size_t>(std::max(1, wanted)), device.info().max_work_group));
+  programs.emplace(device, static_cast<int>(size));
+  while (size > 1 && programs->largest_group() < size)
+    programs.emplace(device, static_cast<int>(size /= 2));
+  return static_cast<int>(size);
+}
+
+}  // namespace moclean

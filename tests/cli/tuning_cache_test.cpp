@@ -1,0 +1,128 @@
+#include "cli/tuning_cache.hpp"
+
+#include <cstdlib>
+
+#include <gmock/gmock.h>
+
+#include "cli/program.hpp"
+
+namespace moclean::cli {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::StartsWith;
+
+DeviceInfo made_up_device() {
+  DeviceInfo info;
+  info.name = "pthread-skylake/AMD";
+  info.platform_name = "pocl";
+  info.driver = "3.1";
+  return info;
+}
+
+const DeviceInfo device = made_up_device();
+const Tuning tuning{.tile_rows = 6,
+                    .tile_vectors = 4,
+                    .sweep_rows = 48,
+                    .panel = 2,
+                    .products = ProductPath::clblast,
+                    .eigen = EigenForm::group,
+                    .batch_segments = 64};
+
+class TuningCache : public ::testing::Test {
+ protected:
+  // The file with one piece of its text replaced.
+  CachedTuning read_changed(const std::string& from, const std::string& to) const {
+    write_tuning(file_, device, tuning);
+    std::string text = test::content(file_);
+    const auto place = text.find(from);
+    EXPECT_NE(place, text.npos) << from;
+    folder_.write_text("tuning.json", text.replace(place, from.size(), to));
+    return read_tuning(file_, device);
+  }
+
+  test::TemporaryFolder folder_;
+  std::filesystem::path file_ = folder_ / "tuning.json";
+};
+
+TEST_F(TuningCache, ReturnsWhatWasWritten) {
+  const std::filesystem::path file = folder_ / "a/b/tuning.json";
+
+  write_tuning(file, device, tuning);
+  const CachedTuning cached = read_tuning(file, device);
+
+  EXPECT_EQ(cached.tuning, tuning);
+  EXPECT_THAT(cached.problem, IsEmpty());
+}
+
+TEST_F(TuningCache, FileThatIsNotThereIsNoProblem) {
+  const CachedTuning cached = read_tuning(file_, device);
+
+  EXPECT_FALSE(cached.tuning);
+  EXPECT_THAT(cached.problem, IsEmpty());
+}
+
+TEST_F(TuningCache, DamagedFileIsAProblemThatNamesIt) {
+  for (const char* text : {"", "{", "[]", "\xff\xfe", "{\"format\": 7}", "null"}) {
+    folder_.write_text("tuning.json", text);
+
+    const CachedTuning cached = read_tuning(file_, device);
+
+    EXPECT_FALSE(cached.tuning) << text;
+    EXPECT_THAT(cached.problem, StartsWith(file_.string()));
+  }
+}
+
+TEST_F(TuningCache, ForeignFileIsAProblemThatSaysWhose) {
+  EXPECT_THAT(read_changed("\"3.1\"", "\"3.2\"").problem, HasSubstr("made for driver \"3.2\""));
+  EXPECT_THAT(read_changed("pthread-", "opencl-").problem, HasSubstr("made for device"));
+  EXPECT_THAT(read_changed("\"pocl\"", "\"nvidia\"").problem, HasSubstr("made for platform"));
+  EXPECT_THAT(read_changed("\"version\": 1", "\"version\": 2").problem, HasSubstr("version 1"));
+}
+
+TEST_F(TuningCache, ChoiceOutOfItsRangeIsAProblem) {
+  const std::pair<const char*, const char*> changes[] = {
+      {"\"tile_rows\": 6", "\"tile_rows\": 17"},
+      {"\"panel\": 2", "\"panel\": 0"},
+      {"\"tile_rows\": 6", "\"tile_rows\": 1e30"},
+      {"\"panel\": 2", "\"panels\": 2"},
+      {"\"sweep_rows\": 48", "\"sweep_rows\": \"\""},
+      {"\"group\"", "\"grape\""},
+      {"\"clblast\"", "\"blas\""},
+      {": 64", ": 4294967297"}};
+  for (const auto& [from, to] : changes) {
+    const CachedTuning cached = read_changed(from, to);
+
+    EXPECT_FALSE(cached.tuning) << to;
+    EXPECT_THAT(cached.problem, StartsWith(file_.string())) << to;
+  }
+}
+
+TEST_F(TuningCache, LiesInTheCacheDirectoryOfTheUser) {
+  setenv("XDG_CACHE_HOME", "/cache", 1);
+  const auto by_xdg = tuning_file(device);
+  setenv("XDG_CACHE_HOME", "relative", 1);
+  setenv("HOME", "/home/kim", 1);
+  const auto relative = tuning_file(device);
+  unsetenv("XDG_CACHE_HOME");
+  const auto by_home = tuning_file(device);
+  unsetenv("HOME");
+  const auto nowhere = tuning_file(device);
+
+  EXPECT_THAT(by_xdg.string(), StartsWith("/cache/moclean/tuning-pthread-skylake-AMD-"));
+  EXPECT_EQ(by_home, "/home/kim/.cache/moclean" / by_xdg.filename());
+  EXPECT_EQ(relative, by_home);
+  EXPECT_TRUE(nowhere.empty());
+}
+
+TEST_F(TuningCache, EveryDriverHasAFileOfItsOwn) {
+  setenv("XDG_CACHE_HOME", "/cache", 1);
+  DeviceInfo newer = device;
+  newer.driver = "4.0";
+
+  EXPECT_NE(tuning_file(newer), tuning_file(device));
+}
+
+}  // namespace
+}  // namespace moclean::cli
