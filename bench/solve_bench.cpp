@@ -7,10 +7,10 @@
 
 #include <benchmark/benchmark.h>
 
+#include "moclean/noise/motion_like.hpp"
 #include "moclean/solve/opencl/opencl_backend.hpp"
 
 #include "support/verify.hpp"
-#include "support/workload.hpp"
 
 namespace moclean::bench {
 namespace {
