@@ -27,19 +27,31 @@ kernel void sum_grams(global const segment_t* segments,  // [segments]
 }
 
 #if VW == 1
-inline vreal widen(global const float* p) { return *p; }
+typedef float vfloat;
+inline vreal widen(vfloat v) { return v; }
 #else
-inline vreal widen(global const float* p) {
-  return JOIN(convert_double, VW)(*(global const JOIN(float, VW)*)p);
-}
+typedef JOIN(float, VW) vfloat;
+inline vreal widen(vfloat v) { return JOIN(convert_double, VW)(v); }
 #endif
 
+#define ENTRY vfloat
+#define SCALAR float
+#include "entry.cl"
+
+INLINE vfloat load_floats(global const float* p) { return *(global const vfloat*)p; }
+
 // G = X'X of each block of rows, for X in single precision: the products are exact and summed in
-// double. Launch: one work-item per block.
+// double. X is D, or, `shifted_data`, the X of the running iteration, of segments that take an
+// eigenproblem. Launch: one work-item per block.
 kernel void gram_of_floats(global const segment_t* segments,  // [segments]
                            global const block_t* blocks,      // [block_count]
                            int block_count,
-                           global const float* x,         // [rows x pitch] stacked
+                           global const state_t* states,  // [segments]
+                           global const int* decompose,   // [segments]
+                           int shifted_data,
+                           global const float* d,         // D [rows x pitch] stacked
+                           global const float* t,         // T, or Y
+                           global const float* a,         // A, order ea only
                            global real* widened,          // [block_count x SWEEP_ROWS x pitch]
                            global real* g,                // order x order matrices: first blocks
                            global real* partial_grams) {  // order x order matrices: the others
@@ -47,7 +59,9 @@ kernel void gram_of_floats(global const segment_t* segments,  // [segments]
   if (item >= block_count) return;
   const block_t block = blocks[item];
   const segment_t s = segments[block.segment];
-  if (is_wide(s)) return;
+  global const state_t* state = states + block.segment;
+  if (is_wide(s) || (shifted_data && !decompose[block.segment])) return;
+  const scalars_t k = scalars_of(state);
   global real* rows = widened + item * (size_t)SWEEP_ROWS * s.pitch;
   global real* gram = block.block == 0 ? g + s.square
                                        : partial_grams + s.partial +
@@ -55,8 +69,17 @@ kernel void gram_of_floats(global const segment_t* segments,  // [segments]
   const int begin = block_begin(block, s), end = block_end(block, s);
   for (int row = begin; row < end; row += SWEEP_ROWS) {
     const int count = min(SWEEP_ROWS, end - row);
-    global const float* source = x + (s.first_row + row) * s.pitch;
-    for (int i = 0; i < count * s.pitch; i += VW) store(rows + i, widen(source + i));
+    const size_t first = (s.first_row + row) * s.pitch;
+    for (int i = 0; i < count * s.pitch; i += VW) {
+      vfloat x = load_floats(d + first + i);
+      if (shifted_data) {
+        const vfloat kept = load_floats(t + first + i);
+        x = state->order_ea
+                ? shifted_ea(x, kept, load_floats(a + first + i), k.inverse_mu, k.lambda)
+                : shifted(x, kept, k.inverse_last, k.inverse_mu, k.lambda);
+      }
+      store(rows + i, widen(x));
+    }
     add_gram(rows, gram, row == begin, s, count);
   }
 }
@@ -79,16 +102,15 @@ kernel void gram_of_wide_floats(global const segment_t* segments,  // [segments]
   }
 }
 
-// The factors of A in single precision: V, f and Z at low rank, W else, or W in any case.
+// The factors of A in single precision: V, f and Z at low rank, W else.
 // Launch: (rows of the largest order, active segments).
 kernel void narrow(global const segment_t* segments,  // [segments]
                    global const int* active,          // [active segments]
                    global const state_t* states,      // [segments]
-                   int always_w,
-                   global const real* w,  // order x order matrices
-                   global const real* v,  // order x order matrices
-                   global const real* z,  // order x order matrices
-                   global const real* f,  // `order` per segment
+                   global const real* w,              // order x order matrices
+                   global const real* v,              // order x order matrices
+                   global const real* z,              // order x order matrices
+                   global const real* f,              // `order` per segment
                    global float* w_float, global float* v_float, global float* z_float,
                    global float* f_float) {
   const int index = active[get_global_id(1)];
@@ -96,7 +118,7 @@ kernel void narrow(global const segment_t* segments,  // [segments]
   const int row = get_global_id(0);
   if (row >= s.order) return;
   const size_t at = s.square + row * (size_t)s.order_pitch;
-  if (always_w || !states[index].low_rank) {
+  if (!states[index].low_rank) {
     for (int j = 0; j < s.order_pitch; ++j) w_float[at + j] = w[at + j];
     return;
   }

@@ -20,7 +20,8 @@ kernel void start_state(global const segment_t* segments,  // [segments]
                         global const real* largest,      // [segments]: max |D_ij|
                         real lambda,  // 0: lambda_scale / sqrt(max(rows, columns))
                         real lambda_scale, real mu0_factor, real mu_max_factor, real rho,
-                        int order_ea, int pure,
+                        int order_ea, int pure, int max_iterations,
+                        real keep_below,          // A is kept from this residual on
                         global state_t* states,   // [segments]
                         global real* dual,        // y, `order` per segment
                         global int* decompose) {  // [segments]: 1 asks for the eigenproblem of X
@@ -33,6 +34,7 @@ kernel void start_state(global const segment_t* segments,  // [segments]
   global state_t* state = states + active[item];
   state->mu = mu;
   state->mu_next = fmin(rho * mu, mu * mu_max_factor);
+  state->inverse_last = 0;
   state->mu_max = mu * mu_max_factor;
   state->lambda = weight;
   state->dual_scale = 1 / fmax(norm, largest[active[item]] / weight);
@@ -43,6 +45,7 @@ kernel void start_state(global const segment_t* segments,  // [segments]
   state->finished = 0;
   state->order_ea = order_ea;
   state->pure = pure;
+  state->keep = state->residual <= keep_below || max_iterations == 1;
   state->low_rank = 0;
   decompose[active[item]] = !pure;
   for (int k = 0; k < s.order; ++k)
@@ -88,6 +91,7 @@ kernel void advance(global const segment_t* segments,  // [segments]
                     global const int* partial_sparse,    // [all blocks]: whether E is not zero
                     global const real* frobenius,        // [segments]: |D|_F
                     real rho, real tolerance, int max_iterations,
+                    real keep_below,         // A is kept from this residual on
                     int keep_pure,           // 0: no segment counts as pure from now on
                     global state_t* states,  // [segments]
                     global int* decompose,   // [segments]
@@ -106,10 +110,14 @@ kernel void advance(global const segment_t* segments,  // [segments]
   state->residual = sqrt(squares) / frobenius[active[item]];
   state->converged = state->residual <= tolerance;
   state->iterations += 1;
+  state->inverse_last = 1 / state->mu;
   state->mu = state->mu_next;
   state->mu_next = fmin(rho * state->mu, state->mu_max);
   state->pure = state->pure && !sparse && keep_pure;
   state->finished = state->converged || state->iterations >= max_iterations;
   decompose[active[item]] = !state->finished && !state->pure;
-  if (state->finished) wanted[active[item]] = 0;
+  if (state->finished)
+    wanted[active[item]] = 0;
+  else
+    state->keep = state->residual <= keep_below || state->iterations + 1 >= max_iterations;
 }

@@ -1,77 +1,81 @@
-// The element-wise steps of robust PCA where A = XW is known, in the notation of
-// host/moclean/solve/reference/robust_pca.cpp, a work-group of WG work-items per block of rows: the
-// form for GPUs. Beside products_group.cl it does what sweep.cl does in one go.
+// The element-wise steps of robust PCA where A = XW is a product of its own, in the notation of
+// kernels/entry.cl, a work-group of WG work-items per block of rows: the form for GPUs. Beside
+// products_group.cl it does what sweep.cl does in one go.
 //
-//   order ae: T = D - A + Y/mu                Y+ = clamp(mu T, -lambda, lambda)
-//             X+ = A - Y/mu + Y+ (1/mu + 1/mu+)
-//   order ea: Y+ = mu (X - A)                 T+ = D - A + Y+/mu+
-//             E+ = soft(T+, lambda/mu+)       X+ = A + clamp(T+, -lambda/mu+, lambda/mu+)
-//   |D - A - E|_F^2 = |(Y+ - Y)/mu|^2
+//   start      Y = dual_scale D, A = 0
+//   form       order ae: X = D - E + Y/mu from T
+//              order ea: E = soft(D - A + Y/mu, lambda/mu), X = A + clamp(D - A + Y/mu, ..)
+//   shrink     order ae: T = mu (D - A) + Y        order ea: Y+ = mu (X - A)
+//              |D - A - E|_F^2 = |(Y+ - Y)/mu|^2
+//   finish     order ae: E = (T - clamp(T, -lambda, lambda)) / mu     order ea: as `form` left it
 //
 // Neighbouring work-items take neighbouring entries, across the rows of a block, which are one run
 // of memory. Launch: WG work-items per active block.
 
 #include "state.cl"
 
+#define ENTRY real
+#define SCALAR real
+#include "entry.cl"
+
 #ifndef WG
 #error "WG is not defined: work-items of a work-group, a power of two"
 #endif
 
-// Y, the first X, and for order ea the first E.
+// The entries first .. last of the stacked matrices that belong to a work-group.
+typedef struct {
+  segment_t segment;
+  global const state_t* state;
+  size_t first, last;
+  int block;  // among all blocks of the batch
+} part_t;
+
+INLINE part_t part_of(global const segment_t* segments, global const block_t* blocks,
+                      global const state_t* states) {
+  const block_t block = blocks[get_group_id(0)];
+  const segment_t s = segments[block.segment];
+  const part_t part = {s, states + block.segment, (s.first_row + block_begin(block, s)) * s.pitch,
+                       (s.first_row + block_end(block, s)) * s.pitch, s.first_block + block.block};
+  return part;
+}
+
 kernel __attribute__((reqd_work_group_size(WG, 1, 1))) void start(
     global const segment_t* segments,  // [segments]
     global const block_t* blocks,      // [active blocks]
     int block_count,                   // of active blocks
     global const state_t* states,      // [segments]
     global const real* data,           // D [rows x pitch] stacked
-    global real* y,                    // Y
-    global real* x,                    // X
-    global real* e) {                  // E, order ea only
+    global real* t,                    // Y
+    global real* a) {                  // A, order ea only
   if ((int)get_group_id(0) >= block_count) return;
-  const block_t block = blocks[get_group_id(0)];
-  const segment_t s = segments[block.segment];
-  global const state_t* state = states + block.segment;
-  const real inverse_mu = 1 / state->mu, dual_scale = state->dual_scale;
-  const real limit = state->lambda * inverse_mu;
-  const size_t last = (s.first_row + block_end(block, s)) * s.pitch;
-  for (size_t i = (s.first_row + block_begin(block, s)) * s.pitch + get_local_id(0); i < last;
-       i += WG) {
-    const real dual = data[i] * dual_scale;
-    const real t = fma(dual, inverse_mu, data[i]);
-    const real kept = state->order_ea ? clamp(t, -limit, limit) : t;  // E = soft(T), X = T - E
-    y[i] = dual;
-    x[i] = kept;
-    if (state->order_ea) e[i] = t - kept;
+  const part_t part = part_of(segments, blocks, states);
+  for (size_t i = part.first + get_local_id(0); i < part.last; i += WG) {
+    t[i] = data[i] * part.state->dual_scale;
+    if (part.state->order_ea) a[i] = 0;
   }
 }
 
-// One entry of order ae; returns the squared residual. x_next holds A.
-INLINE real update_ae(global const state_t* s, real d, global real* y, global real* x_next,
-                      real* largest) {
-  const real mu = s->mu, lambda = s->lambda, inverse = 1 / mu, inverse_next = 1 / s->mu_next;
-  const real dual = *y, a = *x_next;
-  const real t = fma(mu, d - a, dual);
-  const real dual_next = clamp(t, -lambda, lambda);
-  const real rest = (dual_next - dual) * inverse;
-  *largest = fmax(*largest, fabs(t));
-  *y = dual_next;
-  *x_next = fma(dual_next, inverse + inverse_next, fma(dual, -inverse, a));
-  return rest * rest;
-}
-
-// The same for order ea, and E+, which belongs to the next A.
-INLINE real update_ea(global const state_t* s, real d, real x, global real* y, global real* x_next,
-                      global real* e_next) {
-  const real mu = s->mu, inverse_next = 1 / s->mu_next, limit = s->lambda * inverse_next;
-  const real dual = *y, a = *x_next;
-  const real dual_next = mu * (x - a);
-  const real rest = (dual_next - dual) / mu;
-  const real t_next = fma(dual_next, inverse_next, d - a);
-  const real kept = clamp(t_next, -limit, limit);
-  *y = dual_next;
-  *x_next = a + kept;
-  *e_next = t_next - kept;
-  return rest * rest;
+kernel __attribute__((reqd_work_group_size(WG, 1, 1))) void form(
+    global const segment_t* segments,  // [segments]
+    global const block_t* blocks,      // [active blocks]
+    int block_count,                   // of active blocks
+    global const state_t* states,      // [segments]
+    global const real* data,           // D [rows x pitch] stacked
+    global const real* t,              // T, or Y
+    global const real* a,              // A, order ea only
+    global real* e,                    // E, order ea only
+    global real* x) {                  // X
+  if ((int)get_group_id(0) >= block_count) return;
+  const part_t part = part_of(segments, blocks, states);
+  if (part.state->finished) return;
+  const scalars_t k = scalars_of(part.state);
+  for (size_t i = part.first + get_local_id(0); i < part.last; i += WG)
+    if (part.state->order_ea) {
+      e[i] = sparse_part(data[i], t[i], a[i], k.inverse_mu, k.lambda);
+      x[i] = shifted_ea(data[i], t[i], a[i], k.inverse_mu, k.lambda);
+    } else {
+      x[i] = shifted(data[i], t[i], k.inverse_last, k.inverse_mu, k.lambda);
+    }
 }
 
 kernel __attribute__((reqd_work_group_size(WG, 1, 1))) void shrink(
@@ -81,66 +85,50 @@ kernel __attribute__((reqd_work_group_size(WG, 1, 1))) void shrink(
     global const state_t* states,      // [segments]
     global const real* data,           // D [rows x pitch] stacked
     global const real* x,              // X, order ea only
-    global real* y,                    // Y -> Y+
-    global real* a,                    // A -> X+
-    global real* e_next,               // E+, order ea only
+    global const real* a,              // A
+    global real* t,                    // T -> T, or Y -> Y+
     global double* partial_squares,    // [all blocks]: |D - A - E|_F^2
     global int* partial_sparse) {      // [all blocks]: whether E is not zero; order ae only
-  local real squares[WG], largest[WG];
+  local real squares[WG], sparse[WG];
   const int lane = get_local_id(0);
   if ((int)get_group_id(0) >= block_count) return;  // uniform, as all that follow
-  const block_t block = blocks[get_group_id(0)];
-  const segment_t s = segments[block.segment];
-  global const state_t* state = states + block.segment;
-  if (state->finished) return;
-  const size_t first = (s.first_row + block_begin(block, s)) * s.pitch;
-  const size_t last = (s.first_row + block_end(block, s)) * s.pitch;
-  real sum = 0, top = 0;
-  for (size_t base = first; base < last; base += WG) {
+  const part_t part = part_of(segments, blocks, states);
+  if (part.state->finished) return;
+  const scalars_t k = scalars_of(part.state);
+  real sum = 0, any = 0;
+  for (size_t base = part.first; base < part.last; base += WG) {
     const size_t i = base + lane;
-    if (i >= last) continue;
-    sum += state->order_ea ? update_ea(state, data[i], x[i], y + i, a + i, e_next + i)
-                           : update_ae(state, data[i], y + i, a + i, &top);
+    if (i >= part.last) continue;
+    const real dual = part.state->order_ea ? t[i] : limited(t[i], k.lambda);
+    const real next = part.state->order_ea ? k.mu * (x[i] - a[i]) : fma(k.mu, data[i] - a[i], dual);
+    const real dual_next = part.state->order_ea ? next : limited(next, k.lambda);
+    const real rest = (dual_next - dual) * k.inverse_mu;
+    sum += rest * rest;
+    any += fabs(next - dual_next);
+    t[i] = next;
   }
   squares[lane] = sum;
-  largest[lane] = top;
+  sparse[lane] = any;
   barrier(CLK_LOCAL_MEM_FENCE);  // all terms are written
-  sum = top = 0;
+  sum = any = 0;
   for (int i = 0; i < WG; ++i) {  // in every work-item alike
     sum += squares[i];
-    top = fmax(top, largest[i]);
+    any += sparse[i];
   }
-  partial_squares[s.first_block + block.block] = sum;
-  partial_sparse[s.first_block + block.block] = top > state->lambda;
+  partial_squares[part.block] = sum;
+  partial_sparse[part.block] = any > 0;
 }
 
-// E of segments that have finished, from the X that their last iteration read and the X+ and Y+
-// that it wrote (mu is mu+ by now); leaves that X in both places, for A = XW.
-//   order ae: E = D + Y+/mu+ - X+, and zero where |Y+| < lambda; order ea: as it was kept.
 kernel __attribute__((reqd_work_group_size(WG, 1, 1))) void finish(
     global const segment_t* segments,  // [segments]
     global const block_t* blocks,      // [active blocks]
     int block_count,                   // of active blocks
     global const state_t* states,      // [segments]
-    global real* x_even,               // X of iterations 0, 2, .. -> X of the last
-    global real* x_odd,                // X of iterations 1, 3, .. -> the same
-    global const real* e_even,         // E likewise, order ea only
-    global const real* e_odd,
-    global const real* data,  // D
-    global real* y) {         // Y+ -> E
+    global const real* e,              // E, order ea only
+    global real* t) {                  // T, or Y -> E
   if ((int)get_group_id(0) >= block_count) return;
-  const block_t block = blocks[get_group_id(0)];
-  const segment_t s = segments[block.segment];
-  global const state_t* state = states + block.segment;
-  const int last_odd = (state->iterations + 1) % 2;
-  global real* x = last_odd ? x_odd : x_even;
-  global real* x_next = last_odd ? x_even : x_odd;
-  global const real* e = last_odd ? e_odd : e_even;
-  const size_t last = (s.first_row + block_end(block, s)) * s.pitch;
-  for (size_t i = (s.first_row + block_begin(block, s)) * s.pitch + get_local_id(0); i < last;
-       i += WG) {
-    const real sparse = fma(y[i], (real)(1 / state->mu), data[i]) - x_next[i];
-    y[i] = state->order_ea ? e[i] : fabs(y[i]) < state->lambda ? 0 : sparse;
-    x_next[i] = x[i];
-  }
+  const part_t part = part_of(segments, blocks, states);
+  const real lambda = part.state->lambda, inverse_last = part.state->inverse_last;
+  for (size_t i = part.first + get_local_id(0); i < part.last; i += WG)
+    t[i] = part.state->order_ea ? e[i] : (t[i] - limited(t[i], lambda)) * inverse_last;
 }

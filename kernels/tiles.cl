@@ -5,6 +5,11 @@
 // vector wide. `width` is always one of the two, as a constant, so that the loops unroll. Rows past
 // the lower edge are read from the last row and not written. Every sum runs over k in increasing
 // order, so a tile's shape does not change its values.
+//
+// No loop here copies neighbouring vectors to or from an array: compilers make a memcpy of it
+// before they come to unroll it, and the array lives in memory from then on. So loads stand where
+// they are used, in every row again, and are taken together by the compiler; copies go down the
+// columns.
 
 #ifndef TILE_ROWS
 #error "TILE_ROWS is not defined: rows of a register tile"
@@ -29,39 +34,55 @@ INLINE void clear_tile(tile_t* tile, const int width) {
 INLINE void load_tile(tile_t* tile, global const real* source, int pitch, int row, int row_end,
                       int column, const int width) {
 #pragma unroll
-  for (int r = 0; r < TILE_ROWS; ++r)
+  for (int v = 0; v < width; ++v)
 #pragma unroll
-    for (int v = 0; v < width; ++v)
+    for (int r = 0; r < TILE_ROWS; ++r)
       tile->at[r][v] = load(source + min(row + r, row_end - 1) * (size_t)pitch + column + v * VW);
+}
+
+INLINE void store_rows(const tile_t* tile, global real* target, int pitch, int rows,
+                       const int width) {
+#pragma unroll
+  for (int v = 0; v < width; ++v)
+#pragma unroll
+    for (int r = 0; r < TILE_ROWS; ++r)
+      if (r < rows) store(target + r * (size_t)pitch + v * VW, tile->at[r][v]);
 }
 
 INLINE void store_tile(const tile_t* tile, global real* target, int pitch, int row, int row_end,
                        int column, const int width) {
-#pragma unroll
-  for (int r = 0; r < TILE_ROWS; ++r)
-#pragma unroll
-    for (int v = 0; v < width; ++v)
-      if (row + r < row_end)
-        store(target + (row + r) * (size_t)pitch + column + v * VW, tile->at[r][v]);
+  target += row * (size_t)pitch + column;
+  if (row + TILE_ROWS <= row_end)
+    store_rows(tile, target, pitch, TILE_ROWS, width);
+  else
+    store_rows(tile, target, pitch, row_end - row, width);
 }
 
 // tile += sum_k weight_k m[k][row ..] m[k][column ..], k = 0 .. depth - 1, all weights 1 if there
-// are none; rows past the edge of `m` read its padding, which is zero.
-INLINE void add_outer_products(tile_t* tile, global const real* m, int pitch, int depth,
-                               global const real* weight, int row, int column, const int width) {
+// are none. `whole` as a constant: no row of the tile lies past the edge of `m`; those that do read
+// its padding, which is zero.
+INLINE void add_weighted_rows(tile_t* tile, global const real* m, int pitch, int depth,
+                              global const real* weight, int row, int column, const int width,
+                              const int whole) {
   for (int k = 0; k < depth; ++k) {
     const real w = weight ? weight[k] : 1;
     global const real* mk = m + k * (size_t)pitch;
-    vreal right[TILE_VECTORS];
-#pragma unroll
-    for (int v = 0; v < width; ++v) right[v] = load(mk + column + v * VW);
 #pragma unroll
     for (int r = 0; r < TILE_ROWS; ++r) {
-      const vreal left = w * mk[min(row + r, pitch - 1)];
+      const vreal left = w * mk[whole ? row + r : min(row + r, pitch - 1)];
 #pragma unroll
-      for (int v = 0; v < width; ++v) tile->at[r][v] = fma(left, right[v], tile->at[r][v]);
+      for (int v = 0; v < width; ++v)
+        tile->at[r][v] = fma(left, load(mk + column + v * VW), tile->at[r][v]);
     }
   }
+}
+
+INLINE void add_outer_products(tile_t* tile, global const real* m, int pitch, int depth,
+                               global const real* weight, int row, int column, const int width) {
+  if (row + TILE_ROWS <= pitch)
+    add_weighted_rows(tile, m, pitch, depth, weight, row, column, width, 1);
+  else
+    add_weighted_rows(tile, m, pitch, depth, weight, row, column, width, 0);
 }
 
 // tile += left[row ..][0 .. depth) * right[0 .. depth)[column ..].
@@ -72,14 +93,12 @@ INLINE void add_product(tile_t* tile, global const real* left, int left_pitch,
 #pragma unroll
   for (int r = 0; r < TILE_ROWS; ++r) l[r] = left + min(row + r, row_end - 1) * (size_t)left_pitch;
   for (int k = 0; k < depth; ++k) {
-    vreal b[TILE_VECTORS];
-#pragma unroll
-    for (int v = 0; v < width; ++v) b[v] = load(right + k * (size_t)pitch + column + v * VW);
+    global const real* b = right + k * (size_t)pitch + column;
 #pragma unroll
     for (int r = 0; r < TILE_ROWS; ++r) {
       const vreal a = l[r][k];
 #pragma unroll
-      for (int v = 0; v < width; ++v) tile->at[r][v] = fma(a, b[v], tile->at[r][v]);
+      for (int v = 0; v < width; ++v) tile->at[r][v] = fma(a, load(b + v * VW), tile->at[r][v]);
     }
   }
 }

@@ -95,6 +95,13 @@ TEST_P(OpenClEdgeCases, RankOne) {
   expect_agreement(test::batch_of({data}), method_);
 }
 
+// Whose residual falls to nothing in one iteration, so that none before it was taken for the last.
+TEST_P(OpenClEdgeCases, SegmentsThatConvergeAtOnceAmongOthers) {
+  const Matrix rank_one = test::random_matrix(50, 1, 1) * test::random_matrix(1, 20, 2);
+  const SegmentBatch planted = test::planted_batch({.columns = 20, .rank = 2}, {50});
+  expect_agreement(test::batch_of({rank_one, planted.segment(0), rank_one.topRows(10)}), method_);
+}
+
 TEST_P(OpenClEdgeCases, TinyAndHugeValues) {
   const Matrix data = test::planted({.rows = 60, .columns = 20}).data();
 

@@ -1,6 +1,7 @@
 // Notation as in solve/reference/robust_pca.cpp, here for all active segments of a batch at once:
 //   D, A, E, X, Y   stacked matrices; X is what singular value thresholding is applied to; X+ and
 //                   Y+ are those of the next iteration
+//   T               mu (D - A) + Y, which tells Y+ and E; order ea: Y (kernels/entry.cl)
 //   G = X'X         Gram matrix (XX' where rows < columns), eigenvalues sigma^2, eigenvectors Z
 //   f, W            f_k = max(1 - (1/mu)/sigma_k, 0), W = Z' diag(f) Z, so that SVT_{1/mu}(X) = XW
 //   V               Z' for the vectors with f_k > 0
@@ -9,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "moclean/device/kernel_source.hpp"
 #include "moclean/solve/opencl/robust_pca_work.hpp"
@@ -22,6 +24,10 @@ namespace {
 /// to relative accuracy. 1/mu relative to |D|_2 is the same for all segments, so all change over in
 /// the same iteration, whatever their data and neighbours.
 constexpr double graded_below = 6e-7;
+
+/// How much the residual can fall in one iteration. It falls by about rho and never was seen to
+/// fall by four with the default; nothing but time is lost if it does.
+double steepest_fall(const RobustPca& method) { return 4 * method.rho / 1.5; }
 
 double next_tau(double tau, const RobustPca& method) {
   return std::max(tau / method.rho, 1 / (method.mu0_factor * method.mu_max_factor));
@@ -94,6 +100,7 @@ RobustPcaSolver<Real>::RobustPcaSolver(const Device& device, const Tuning& tunin
       threshold_(steps_, "threshold"),
       advance_(steps_, "advance"),
       start_(sweeps_, "start"),
+      form_(sweeps_, "form"),
       sweep_(sweeps_, "sweep"),
       shrink_(sweeps_, "shrink"),
       finish_(sweeps_, "finish"),
@@ -107,10 +114,10 @@ std::uint64_t RobustPcaSolver<Real>::memory_of(Index rows, Index columns,
                                                const RobustPca& method) const {
   const Index order = std::min(rows, columns);
   const Index blocks = (rows + block_rows - 1) / block_rows;
-  const Index scratch = blocks * sweep_rows_ * padded(columns);
+  const Index scratch = blocks * sweep_rows_ * padded(columns);  // of a chunk
   const Index stacked = (method.order == UpdateOrder::ea ? 6 : 4) * rows * padded(columns);
   const Index square = order * padded(order);
-  const Index reals = stacked + scratch + (mixed ? 3 * square + padded(order) : 0);
+  const Index reals = stacked + 2 * scratch + (mixed ? 3 * square + padded(order) : 0);
   const Index doubles = (5 + (rows < columns ? 0 : blocks - 1)) * square + 3 * padded(order) +
                         (mixed ? scratch : 0) + 4 * blocks;
   const auto bookkeeping = sizeof(SegmentRecord) + sizeof(SegmentState) + 8 * sizeof(double);
@@ -119,19 +126,27 @@ std::uint64_t RobustPcaSolver<Real>::memory_of(Index rows, Index columns,
          bookkeeping + static_cast<std::uint64_t>(blocks) * sizeof(BlockRecord);
 }
 
-// G = X'X (XX' for wide segments).
+// G = D'D (DD' for wide segments).
 template <class Real>
-void RobustPcaSolver<Real>::gram(const Batch& batch, Memory& m, const Buffer<Real>& x,
-                                 Buffer<double>& g) {
+void RobustPcaSolver<Real>::gram_of_data(const Batch& batch, Memory& m) {
+  if constexpr (mixed)
+    gram_of_floats(batch, m, m.D, false);
+  else
+    products_.gram(batch, m.D, m.V);
+}
+
+// The same for D or for X, of which `wide` has the rows of wide segments.
+template <class Real>
+void RobustPcaSolver<Real>::gram_of_floats(const Batch& batch, Memory& m, const Buffer<Real>& wide,
+                                           bool shifted) {
   if constexpr (mixed) {
     gram_of_floats_.with([&] { return tall_gram_work(batch, sizeof(Real)); })(
-        per_block(batch), batch.device_segments(), batch.device_blocks(), batch.active_blocks(), x,
-        m.widened, g, m.partial_grams);
-    sum_partial_grams(batch, m, g);
+        per_block(batch), batch.device_segments(), batch.device_blocks(), batch.active_blocks(),
+        m.states, m.decompose, cl_int{shifted}, m.D, m.T, m.A, m.widened, m.V, m.partial_grams);
+    sum_partial_grams(batch, m, m.V);
     if (batch.has_wide())
-      gram_of_wide_floats_(per_row(batch), batch.device_segments(), batch.device_active(), x, g);
-  } else {
-    products_.gram(batch, x, g);
+      gram_of_wide_floats_(per_row(batch), batch.device_segments(), batch.device_active(), wide,
+                           m.V);
   }
 }
 
@@ -147,21 +162,40 @@ bool RobustPcaSolver<Real>::graded(double tau) {
   return !mixed && tau < graded_below;
 }
 
-// Y = D / max(|D|_2, max|D_ij| / lambda), mu = mu0_factor / |D|_2, E = 0, A = 0, and the first X;
-// |D|_2 is the root of the largest eigenvalue of D'D.
+// Y = D / max(|D|_2, max|D_ij| / lambda), mu = mu0_factor / |D|_2, E = 0, A = 0; |D|_2 is the root
+// of the largest eigenvalue of D'D.
 template <class Real>
 void RobustPcaSolver<Real>::start(const Batch& batch, Memory& m, const RobustPca& method) {
-  const bool ea = method.order == UpdateOrder::ea;
-  gram(batch, m, m.D, m.V);
+  m.tau = 1 / method.mu0_factor;
+  m.iteration = 0;
+  gram_of_data(batch, m);
   eigen_.all_values(batch, m.V, m.eigenvalues);
   if (graded(m.tau)) eigen_.all_vectors(batch, m.V, m.Z);  // the first iteration needs a basis
   start_state_(per_segment(batch), batch.device_segments(), batch.device_active(),
                batch.active_count(), m.eigenvalues, m.largest, method.lambda, method.lambda_scale,
-               method.mu0_factor, method.mu_max_factor, method.rho, cl_int{ea},
-               cl_int{!ea && !graded(m.tau)}, m.states, m.dual, m.decompose);
+               method.mu0_factor, method.mu_max_factor, method.rho, cl_int{m.ea},
+               cl_int{!m.ea && !graded(m.tau)}, method.max_iterations, m.keep_below, m.states,
+               m.dual, m.decompose);
   start_(per_block(batch), batch.device_segments(), batch.device_blocks(), batch.active_blocks(),
-         m.states, m.D, m.Y, m.X, m.E);
-  if (ea) gram(batch, m, m.X, m.V);
+         m.states, m.D, m.T, m.A);
+}
+
+// X where it is needed as a whole, and its Gram matrix where the last sweep has not formed it.
+template <class Real>
+void RobustPcaSolver<Real>::prepare(const Batch& batch, Memory& m) {
+  const bool fused = !mixed && products_.path() == ProductPath::own;
+  const bool first = m.iteration == 0 && m.ea;
+  const bool whole = graded(m.tau) || products_.path() == ProductPath::clblast || (fused && first);
+  if (whole || batch.has_wide())
+    form_(per_block(batch), batch.device_segments(), batch.device_blocks(), batch.active_blocks(),
+          m.states, cl_int{!whole}, m.D, m.T, m.A, m.E, m.X);
+  if (graded(m.tau)) return;
+  if constexpr (mixed)
+    gram_of_floats(batch, m, m.X, true);
+  else if (!fused || first)
+    products_.gram(batch, m.X, m.V);
+  else if (batch.has_wide())
+    products_.gram(batch, m.X, m.V, GramOf::wide);
 }
 
 // sigma^2, f, and the eigenvectors of X'X, which is in V, that the threshold leaves.
@@ -177,7 +211,7 @@ void RobustPcaSolver<Real>::decompose(const Batch& batch, Memory& m, const Robus
     return;
   }
   if constexpr (!mixed) {
-    Buffer<double>&B = m.X_next, &P = m.W;  // both free until the iteration writes them
+    Buffer<double>&B = m.rotation_target(), &P = m.W;  // both free until the iteration writes them
     products_.rotate(batch, m.X, m.Z, B);
     products_.gram(batch, B, m.V);
     eigen_(batch, m.V, P, m.eigenvalues);
@@ -194,101 +228,83 @@ void RobustPcaSolver<Real>::threshold(const Batch& batch, Memory& m, bool low_ra
              m.wanted, m.terms);
 }
 
-// A = XW, E = soft(D - A + Y/mu, lambda/mu), Y+ = Y + mu (D - A - E), X+ and its Gram matrix.
+// A = XW, E = soft(D - A + Y/mu, lambda/mu), Y+ = Y + mu (D - A - E), and the Gram matrix of X+.
 template <class Real>
 void RobustPcaSolver<Real>::sweep(const Batch& batch, Memory& m, bool with_gram) {
   const bool fused = with_gram && !mixed;
   const auto run = [&](const auto& W, const auto& V, const auto& Z, const auto& f) {
     sweep_.with([&] { return sweep_work(batch, host_copy(m.states), fused, sizeof(Real)); })(
         per_block(batch), batch.device_segments(), batch.device_blocks(), batch.active_blocks(),
-        m.states, m.D, m.X, m.Y, m.X_next, m.E_next, W, V, Z, f, m.projected, cl_int{fused}, m.G,
+        m.states, m.D, m.X, m.T, m.A, m.E, W, V, Z, f, m.scratch, cl_int{fused}, m.G,
         m.partial_grams, m.partial_squares, m.partial_sparse);
   };
   products_.reconstruct(batch, m.Z, m.f, m.terms, m.W);
   if constexpr (mixed) {
-    narrow(batch, m, false);
+    // What the sweep multiplies by, in single precision.
+    narrow_(per_row(batch), batch.device_segments(), batch.device_active(), m.states, m.W, m.V, m.Z,
+            m.f, m.W_real, m.V_real, m.Z_real, m.f_real);
     run(m.W_real, m.V_real, m.Z_real, m.f_real);
-    if (with_gram) gram(batch, m, m.X_next, m.G);
   } else {
     run(m.W, m.V, m.Z, m.f);
-    if (!fused) return;
-    sum_partial_grams(batch, m, m.G);
-    if (batch.has_wide()) products_.gram(batch, m.X_next, m.G, GramOf::wide);
+    if (fused) sum_partial_grams(batch, m, m.G);
   }
-}
-
-// What the sweep multiplies by, in single precision.
-template <class Real>
-void RobustPcaSolver<Real>::narrow(const Batch& batch, Memory& m, bool always_w) {
-  narrow_(per_row(batch), batch.device_segments(), batch.device_active(), m.states,
-          cl_int{always_w}, m.W, m.V, m.Z, m.f, m.W_real, m.V_real, m.Z_real, m.f_real);
 }
 
 // The same with a product of a library between eigenproblem and sweep.
 template <class Real>
-void RobustPcaSolver<Real>::apply_and_shrink(const Batch& batch, Memory& m, bool with_gram) {
+void RobustPcaSolver<Real>::apply_and_shrink(const Batch& batch, Memory& m) {
   if constexpr (!mixed) {
     products_.reconstruct(batch, m.Z, m.f, m.terms, m.W);
-    products_.apply(batch, m.X, m.W, m.X_next);
+    products_.apply(batch, m.X, m.W, m.A);
     shrink_.with([&] { return shrink_work(batch, host_copy(m.states), sizeof(Real)); })(
         per_block(batch), batch.device_segments(), batch.device_blocks(), batch.active_blocks(),
-        m.states, m.D, m.X, m.Y, m.X_next, m.E_next, m.partial_squares, m.partial_sparse);
-    if (with_gram) products_.gram(batch, m.X_next, m.G);
+        m.states, m.D, m.X, m.A, m.T, m.partial_squares, m.partial_sparse);
   }
 }
 
 template <class Real>
 void RobustPcaSolver<Real>::iterate(const Batch& batch, Memory& m, const RobustPca& method) {
   const double next = next_tau(m.tau, method);
+  prepare(batch, m);
   decompose(batch, m, method);
   if (products_.path() == ProductPath::own)
     sweep(batch, m, !graded(next));
   else
-    apply_and_shrink(batch, m, !graded(next));
+    apply_and_shrink(batch, m);
   // residual = |D - A - E|_F / |D|_F, mu = min(rho mu, mu_max)
   advance_(per_segment(batch), batch.device_segments(), batch.device_active(), batch.active_count(),
            m.partial_squares, m.partial_sparse, m.frobenius, method.rho, method.tolerance,
-           cl_int{method.max_iterations}, cl_int{!graded(next)}, m.states, m.decompose, m.wanted);
-  std::swap(m.X, m.X_next);
-  std::swap(m.E, m.E_next);
+           cl_int{method.max_iterations}, m.keep_below, cl_int{!graded(next)}, m.states,
+           m.decompose, m.wanted);
   std::swap(m.V, m.G);
   m.tau = next;
   m.iteration += 1;
 }
 
-// A into D and E into Y for the segments that have finished since the last call, which then leave
-// the batch; the others are its active segments.
+// Segments that have finished since the last call leave the batch; the others are its active
+// segments. Returns those that have finished in an iteration that did not keep A.
 template <class Real>
-void RobustPcaSolver<Real>::retire(Batch& batch, Memory& m, const Finished& finished) {
+std::vector<std::int32_t> RobustPcaSolver<Real>::retire(Batch& batch, Memory& m,
+                                                        const Finished& finished) {
   m.states.read(m.host_states);
-  std::vector<std::int32_t> remaining, done;
-  for (const std::int32_t b : batch.active())
-    (m.host_states[static_cast<std::size_t>(b)].finished ? done : remaining).push_back(b);
-  if (done.empty()) return;
-  batch.select(done);
-  for (const auto b : done)
-    m.host_terms[static_cast<std::size_t>(b)] =
-        std::max(1, m.host_states[static_cast<std::size_t>(b)].rank);
-  m.terms.write(m.host_terms);
-  products_.reconstruct(batch, m.Z, m.f, m.terms, m.W);
-  const bool swapped = m.iteration % 2 != 0;
-  const auto run = [&](const auto& W) {
-    finish_(per_block(batch), batch.device_segments(), batch.device_blocks(), batch.active_blocks(),
-            m.states, swapped ? m.X_next : m.X, swapped ? m.X : m.X_next, swapped ? m.E_next : m.E,
-            swapped ? m.E : m.E_next, W, m.D, m.Y);
-  };
-  if constexpr (mixed) {
-    narrow(batch, m, true);
-    run(m.W_real);
-  } else {
-    run(m.W);
+  std::vector<std::int32_t> remaining, lost;
+  Index done = 0;
+  for (const std::int32_t b : batch.active()) {
+    const SegmentState& state = m.host_states[static_cast<std::size_t>(b)];
+    if (!state.finished)
+      remaining.push_back(b);
+    else if (state.keep || products_.path() == ProductPath::clblast)
+      ++done;
+    else
+      lost.push_back(b);
   }
+  if (remaining.size() == batch.active().size()) return lost;
   batch.select(remaining);
-  finished(static_cast<Index>(done.size()));
+  if (done > 0) finished(done);
+  return lost;
 }
 
-// Iterations that are certain not to finish a segment, going by the residuals that were read: the
-// residual falls by about rho an iteration, and never was seen to fall by four.
+// Iterations that are certain not to finish a segment, going by the residuals that were read.
 template <class Real>
 int RobustPcaSolver<Real>::iterations_until_next_look(const Batch& batch, const Memory& m,
                                                       const RobustPca& method) const {
@@ -299,27 +315,18 @@ int RobustPcaSolver<Real>::iterations_until_next_look(const Batch& batch, const 
   double least = 1;
   for (const std::int32_t b : batch.active())
     least = std::min(least, m.host_states[static_cast<std::size_t>(b)].residual);
-  const double steps = std::log(least / method.tolerance) / std::log(4 * method.rho / 1.5);
+  const double steps = std::log(least / method.tolerance) / std::log(steepest_fall(method));
   return std::clamp(static_cast<int>(steps), 1, method.max_iterations);
 }
 
+// Iterates from the start until all active segments have finished; returns those of which A was
+// not kept.
 template <class Real>
-void RobustPcaSolver<Real>::solve(const SegmentBatch& data, Index first, Index last,
-                                  const RobustPca& method, Solution& solution,
-                                  const Finished& finished, const std::stop_token& stop) {
-  Batch batch(device_, data, first, last);
-  Memory m(device_, batch, method, sweep_rows_);
-  upload(rows_of(data, first, last), m.D);
-  if (products_.path() == ProductPath::clblast)
-    m.X_next.fill_zero();  // it leaves the padding alone
-
-  norms_(batch, m.D, m.frobenius, m.largest);
-  const auto remaining = nonzero_segments(batch, m.frobenius);
-  if (remaining.size() < batch.active().size()) {
-    finished(static_cast<Index>(batch.active().size() - remaining.size()));
-    batch.select(remaining);
-  }
-  m.tau = 1 / method.mu0_factor;
+std::vector<std::int32_t> RobustPcaSolver<Real>::run(Batch& batch, Memory& m,
+                                                     const RobustPca& method,
+                                                     const Finished& finished,
+                                                     const std::stop_token& stop) {
+  std::vector<std::int32_t> lost;
   start(batch, m, method);
   while (batch.active_count() > 0) {
     for (int i = iterations_until_next_look(batch, m, method); i > 0; --i) {
@@ -330,12 +337,41 @@ void RobustPcaSolver<Real>::solve(const SegmentBatch& data, Index first, Index l
       iterate(batch, m, method);
       if (graded(m.tau)) break;
     }
-    retire(batch, m, finished);
+    const auto more = retire(batch, m, finished);
+    lost.insert(lost.end(), more.begin(), more.end());
   }
+  std::ranges::sort(lost);
+  return lost;
+}
+
+template <class Real>
+void RobustPcaSolver<Real>::solve(const SegmentBatch& data, Index first, Index last,
+                                  const RobustPca& method, Solution& solution,
+                                  const Finished& finished, const std::stop_token& stop) {
+  Batch batch(device_, data, first, last);
+  Memory m(device_, batch, method, sweep_rows_);
+  upload(rows_of(data, first, last), m.D);
+  norms_(batch, m.D, m.frobenius, m.largest);
+  const std::vector<std::int32_t> all(batch.active().begin(), batch.active().end());
+  const auto remaining = nonzero_segments(batch, m.frobenius);
+  if (remaining.size() < batch.active().size()) {
+    finished(static_cast<Index>(batch.active().size() - remaining.size()));
+    batch.select(remaining);
+  }
+  m.keep_below = 2 * steepest_fall(method) * method.tolerance;
+  const auto lost = run(batch, m, method, finished, stop);
+  if (!lost.empty()) {
+    m.keep_below = std::numeric_limits<double>::infinity();
+    batch.select(lost);
+    run(batch, m, method, finished, stop);
+  }
+  batch.select(all);
+  finish_(per_block(batch), batch.device_segments(), batch.device_blocks(), batch.active_blocks(),
+          m.states, m.E, m.T);
   eigen_.check(batch);
 
-  download(m.D, rows_of(solution.low_rank, first, last));
-  download(m.Y, rows_of(solution.sparse, first, last));
+  download(m.A, rows_of(solution.low_rank, first, last));
+  download(m.T, rows_of(solution.sparse, first, last));
   m.states.read(m.host_states);
   for (Index b = first; b < last; ++b)
     solution.segments[static_cast<std::size_t>(b)] =

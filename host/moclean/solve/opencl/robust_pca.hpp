@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <stop_token>
+#include <vector>
 
 #include "moclean/linalg/eigensolver.hpp"
 #include "moclean/linalg/norms.hpp"
@@ -36,15 +37,18 @@ class RobustPcaSolver {
 
   static bool graded(double tau);
   void start(const Batch& batch, Memory& m, const RobustPca& method);
-  void gram(const Batch& batch, Memory& m, const Buffer<Real>& x, Buffer<double>& g);
+  void prepare(const Batch& batch, Memory& m);
+  void gram_of_data(const Batch& batch, Memory& m);
+  void gram_of_floats(const Batch& batch, Memory& m, const Buffer<Real>& wide, bool shifted);
   void sum_partial_grams(const Batch& batch, Memory& m, Buffer<double>& g);
   void decompose(const Batch& batch, Memory& m, const RobustPca& method);
   void threshold(const Batch& batch, Memory& m, bool low_rank_permitted);
   void sweep(const Batch& batch, Memory& m, bool with_gram);
-  void narrow(const Batch& batch, Memory& m, bool always_w);
-  void apply_and_shrink(const Batch& batch, Memory& m, bool with_gram);
+  void apply_and_shrink(const Batch& batch, Memory& m);
   void iterate(const Batch& batch, Memory& m, const RobustPca& method);
-  void retire(Batch& batch, Memory& m, const Finished& finished);
+  std::vector<std::int32_t> retire(Batch& batch, Memory& m, const Finished& finished);
+  std::vector<std::int32_t> run(Batch& batch, Memory& m, const RobustPca& method,
+                                const Finished& finished, const std::stop_token& stop);
   int iterations_until_next_look(const Batch& batch, const Memory& m,
                                  const RobustPca& method) const;
 
@@ -55,7 +59,7 @@ class RobustPcaSolver {
   Norms<Real> norms_;
   Program steps_, sweeps_, grams_;
   Kernel start_state_, threshold_, advance_;                          // of steps_
-  Kernel start_, sweep_, shrink_, finish_;                            // of sweeps_
+  Kernel start_, form_, sweep_, shrink_, finish_;                     // of sweeps_
   Kernel sum_grams_, gram_of_floats_, gram_of_wide_floats_, narrow_;  // of grams_
 };
 

@@ -12,6 +12,7 @@ namespace moclean::opencl {
 struct SegmentState {
   double mu = 0;
   double mu_next = 0;
+  double inverse_last = 0;
   double mu_max = 0;
   double lambda = 0;
   double dual_scale = 0;
@@ -22,25 +23,27 @@ struct SegmentState {
   std::int32_t finished = 0;
   std::int32_t order_ea = 0;
   std::int32_t pure = 0;
+  std::int32_t keep = 0;
   std::int32_t low_rank = 0;
 };
-static_assert(sizeof(SegmentState) == 80);
+static_assert(sizeof(SegmentState) == 88);
 
 /// Everything one batch needs in device memory; allocated once, before the first iteration.
-/// X and X+ change places after every iteration, so do V, which is left where the eigenproblem was,
-/// and G, the Gram matrix of X+.
+/// T holds what is kept between iterations (kernels/entry.cl), E in the end. V, which is left where
+/// the eigenproblem was, and G, the Gram matrix of the next X, change places after every iteration.
 template <class Real>
 struct RobustPcaMemory {
   /// `sweep_rows` as in Tuning.
   RobustPcaMemory(const Device& device, const Batch& batch, const RobustPca& method, int sweep_rows)
-      : D(device, batch.stacked_size()),
-        Y(device, batch.stacked_size()),
+      : ea(method.order == UpdateOrder::ea),
+        D(device, batch.stacked_size()),
+        T(device, batch.stacked_size()),
         X(device, batch.stacked_size()),
-        X_next(device, batch.stacked_size()),
-        E(device, method.order == UpdateOrder::ea ? batch.stacked_size() : 1),
-        E_next(device, E.size()),
-        projected(device, scratch_size(batch, sweep_rows)),
-        widened(device, mixed ? projected.size() : 1),
+        A(device, batch.stacked_size()),
+        E(device, ea ? batch.stacked_size() : 1),
+        rotated(device, E.size()),
+        scratch(device, 2 * chunk_size(batch, sweep_rows)),
+        widened(device, mixed ? chunk_size(batch, sweep_rows) : 1),
         W_real(device, mixed ? batch.square_size() : 1),
         V_real(device, W_real.size()),
         Z_real(device, W_real.size()),
@@ -64,20 +67,25 @@ struct RobustPcaMemory {
     // What no launch writes stays defined: segments of norm zero, rows of Z that are not wanted,
     // and the padding of square matrices.
     for (auto* buffer : {&V, &G, &Z, &W, &partial_grams, &eigenvalues}) buffer->fill_zero();
-    for (auto* buffer : {&Y, &projected, &W_real, &V_real, &Z_real, &f_real}) buffer->fill_zero();
+    for (auto* buffer : {&T, &A, &E, &rotated, &scratch}) buffer->fill_zero();
+    for (auto* buffer : {&W_real, &V_real, &Z_real, &f_real}) buffer->fill_zero();
     decompose.fill_zero();
     states.fill_zero();
     host_states.resize(states.size());
-    host_terms.resize(states.size());
   }
 
   static constexpr bool mixed = number_type<Real> == NumberType::float32;
 
-  static std::size_t scratch_size(const Batch& batch, int sweep_rows) {
+  /// Where B = XZ' of the graded Gram matrix goes: order ae writes A only afterwards.
+  Buffer<Real>& rotation_target() { return ea ? rotated : A; }
+
+  /// Rows that the blocks of a batch work on at a time.
+  static std::size_t chunk_size(const Batch& batch, int sweep_rows) {
     return batch.block_count() * static_cast<std::size_t>(sweep_rows * batch.pitch());
   }
 
-  Buffer<Real> D, Y, X, X_next, E, E_next, projected;
+  bool ea;
+  Buffer<Real> D, T, X, A, E, rotated, scratch;
   Buffer<double> widened;                       // rows of X as doubles, mixed only
   Buffer<Real> W_real, V_real, Z_real, f_real;  // W, V, Z, f in single precision, mixed only
   Buffer<double> V, G, Z, W, partial_grams;
@@ -85,10 +93,10 @@ struct RobustPcaMemory {
   Buffer<double> partial_squares, frobenius, largest;
   Buffer<std::int32_t> partial_sparse, decompose, wanted, terms;
   Buffer<SegmentState> states;
-  double tau = 0;     // (1/mu) / |D|_2, the same for all segments
-  int iteration = 0;  // of all segments that have not finished
+  double tau = 0;         // (1/mu) / |D|_2, the same for all segments
+  double keep_below = 0;  // residual from which on iterations store A
+  int iteration = 0;      // of all segments that have not finished
   std::vector<SegmentState> host_states;
-  std::vector<std::int32_t> host_terms;
 };
 
 }  // namespace moclean::opencl

@@ -3,12 +3,13 @@
 namespace moclean::opencl {
 namespace {
 
-constexpr double flops_per_entry = 12;
+// X, Y+, T and X+ of order ae (kernels/entry.cl); about the same for order ea.
+constexpr double flops_per_entry = 20;
 
-// D, X or A, Y, Y+, X+; order ea writes E+, too.
+// D, T read and written; order ea has A, too.
 Work elementwise_work(const SegmentRecord& segment, const SegmentState& state, double real) {
   const double entries = double(segment.rows) * segment.columns;
-  return {.flops = flops_per_entry * entries, .bytes = (state.order_ea ? 6 : 5) * entries * real};
+  return {.flops = flops_per_entry * entries, .bytes = (state.order_ea ? 5 : 3) * entries * real};
 }
 
 Work product_work(const SegmentRecord& segment, const SegmentState& state, double real) {
@@ -30,7 +31,7 @@ Work sweep_work(const Batch& batch, const std::vector<SegmentState>& states, boo
     if (with_gram && !segment.wide()) {
       const Work gram = gram_work(segment);
       const double rows = double(segment.rows) * segment.columns * sizeof(double);
-      work += {.flops = gram.flops, .bytes = gram.bytes - rows};  // X+ has just been written
+      work += {.flops = gram.flops, .bytes = gram.bytes - rows};  // X+ is at hand
     }
     return work;
   });
