@@ -1,5 +1,6 @@
 // Householder reduction of many symmetric matrices to tridiagonal form, A = Q T Q', one work-item a
-// matrix (Golub and Van Loan, 8.3.1).
+// matrix (Golub and Van Loan, 8.3.1). One triangle is worked on, in whole vectors: row i of A from
+// the block of VW x VW on the diagonal on, which is complete.
 //
 // A is scaled by a power of two to entries below 2, so neither tiny nor huge data over- or
 // underflows. The reduction starts at the first row and T is handed on turned around, last row
@@ -15,19 +16,21 @@
 // are nothing.
 #define NEGLIGIBLE_SQUARES ((real)1e-290)
 
-// Vectors a work-item sums at the same time: enough to hide the latency of an addition.
-#define WIDE 4
+// Rows that are updated side by side: enough to hide the latency of an addition, and no more than
+// their factors and sums have registers.
+#define ROWS (VW < 4 ? VW : 4)
 
-// Copies the upper triangle to the lower, clears the padding, and scales by the returned power of
-// two's inverse.
-inline real symmetrise(global real* a, int n, int pitch) {
+inline int whole(int j) { return j / VW * VW; }  // first entry of the vector with entry j
+
+// Clears the padding, scales the upper triangle by the returned power of two's inverse, and
+// completes its blocks of VW x VW on the diagonal, so that whole vectors can be worked on.
+inline real scale_triangle(global real* a, int n, int pitch) {
   vreal most = 0;
   for (int i = 0; i < n; ++i) {
     global real* row = a + i * (size_t)pitch;
-    const int whole = (i + VW - 1) / VW * VW;  // first whole vector right of the diagonal
     for (int j = n; j < pitch; ++j) row[j] = 0;
-    for (int j = i; j < min(whole, n); ++j) most = fmax(most, (vreal)fabs(row[j]));
-    for (int j = whole; j < pitch; j += VW) most = fmax(most, fabs(load(row + j)));
+    for (int j = whole(i); j < i; ++j) row[j] = a[j * (size_t)pitch + i];
+    for (int j = whole(i); j < pitch; j += VW) most = fmax(most, fabs(load(row + j)));
   }
   const real largest = lane_max(most);
   if (largest == 0) return 1;
@@ -36,10 +39,9 @@ inline real symmetrise(global real* a, int n, int pitch) {
   const real half_scale = ldexp((real)1, -(exponent / 2));
   const real scale = ldexp((real)1, -(exponent - exponent / 2));
   for (int i = 0; i < n; ++i)
-    for (int j = i; j < n; ++j) {
-      const real scaled = a[i * (size_t)pitch + j] * half_scale * scale;
-      a[i * (size_t)pitch + j] = scaled;
-      a[j * (size_t)pitch + i] = scaled;
+    for (int j = whole(i); j < pitch; j += VW) {
+      global real* entry = a + i * (size_t)pitch + j;
+      store(entry, load(entry) * half_scale * scale);
     }
   return ldexp((real)1, exponent);
 }
@@ -56,9 +58,10 @@ inline real dot_product(global const real* a, global const real* b, int pitch) {
 
 // u with H x = (.., e, 0, ..) for the entries x[k + 1 ..] of `row`; returns e. u = 0 (H = I) if the
 // entries past x[k + 1] are zero anyway.
-inline real reflector(global const real* row, global real* u, int k, int n, int pitch) {
-  zero(u, pitch);
-  for (int j = k + 2; j < n; ++j) u[j] = row[j];
+inline real reflector(global const real* row, global real* u, int k, int pitch) {
+  for (int j = 0; j < whole(k + 2); j += VW) store(u + j, 0);
+  for (int j = whole(k + 2); j < pitch; j += VW) store(u + j, load(row + j));
+  for (int j = whole(k + 2); j < min(k + 2, pitch); ++j) u[j] = 0;
   const real first = row[k + 1];
   const real rest = dot_product(u, u, pitch);
   if (rest < NEGLIGIBLE_SQUARES) {
@@ -73,46 +76,96 @@ inline real reflector(global const real* row, global real* u, int k, int n, int 
   return e;
 }
 
-// For the columns of `count` vectors from j on, rows i > k: a_i -= v_i w + w_i v (the previous
-// step's update, delayed until the row is read anyway), and p = sum_i u_i a_i.
-INLINE void update_columns(global real* a, global const real* v, global const real* w,
-                           global const real* u, global real* p, int k, int n, int pitch, int j,
-                           const int count) {
-  vreal vj[WIDE], wj[WIDE], sum[WIDE];
-#pragma unroll
-  for (int c = 0; c < count; ++c) {
-    vj[c] = load(v + j + c * VW);
-    wj[c] = load(w + j + c * VW);
-    sum[c] = 0;
-  }
-  for (int i = k + 1; i < n; ++i) {
-    global real* entry = a + i * (size_t)pitch + j;
-#pragma unroll
-    for (int c = 0; c < count; ++c) {
-      const vreal updated =
-          fma((vreal)-w[i], vj[c], fma((vreal)-v[i], wj[c], load(entry + c * VW)));
-      store(entry + c * VW, updated);
-      sum[c] = fma((vreal)u[i], updated, sum[c]);
-    }
-  }
-#pragma unroll
-  for (int c = 0; c < count; ++c) store(p + j + c * VW, sum[c]);
+// Entries of a and b by turns: shuffles that are cheap.
+#define ALTERNATE(v, a, b) \
+  vreal v;                 \
+  v.even = a;              \
+  v.odd = b;
+
+// The sums of the lanes of ROWS vectors, the sum of vector r in lane (begin + r) % VW of the
+// result, the other lanes zero. `begin` is a multiple of ROWS.
+INLINE vreal lane_sums(const vreal* v, int begin) {
+  (void)begin;  // always 0 where VW = ROWS
+#if VW == 1
+  return v[0];
+#else
+  ALTERNATE(even, v[0].even, v[1].even);
+  ALTERNATE(odd, v[0].odd, v[1].odd);
+  const vreal two = even + odd;
+#if VW == 2
+  return two;
+#else
+  ALTERNATE(next_even, v[2].even, v[3].even);
+  ALTERNATE(next_odd, v[2].odd, v[3].odd);
+  const vreal next = next_even + next_odd;
+#if VW == 4
+  return (vreal)(two.lo, next.lo) + (vreal)(two.hi, next.hi);
+#else
+  const JOIN(REAL, 4) a = two.lo + two.hi, b = next.lo + next.hi, none = 0;
+  const JOIN(REAL, 4) sums = (JOIN(REAL, 4))(a.lo, b.lo) + (JOIN(REAL, 4))(a.hi, b.hi);
+  return begin % VW == 0 ? (vreal)(sums, none) : (vreal)(none, sums);
+#endif
+#endif
+#endif
 }
 
+// For `count` <= ROWS rows from i on, from their block on the diagonal on: a_i -= v_i w + w_i v
+// (the previous step's update, delayed until the row is read anyway), and p = A u. An entry a_ij
+// right of the block stands for a_ji, too: p_j += a_ij u_i and p_i += a_ij u_j. Returns what they
+// add to p for the columns of the block.
+INLINE vreal update_rows(global real* a, global const real* v, global const real* w,
+                         global const real* u, global real* p, int i, int pitch, const int count) {
+  vreal vi[ROWS], wi[ROWS], ui[ROWS], sum[ROWS], block = 0;
+  const int diagonal = whole(i);
+  global real* row = a + i * (size_t)pitch;
+#pragma unroll
+  for (int r = 0; r < ROWS; ++r) sum[r] = 0;
+#pragma unroll
+  for (int r = 0; r < count; ++r) {
+    vi[r] = -v[i + r];
+    wi[r] = -w[i + r];
+    ui[r] = u[i + r];
+    global real* entry = row + r * pitch + diagonal;
+    const vreal updated =
+        fma(wi[r], load(v + diagonal), fma(vi[r], load(w + diagonal), load(entry)));
+    store(entry, updated);
+    block = fma(ui[r], updated, block);
+  }
+  for (int j = diagonal + VW; j < pitch; j += VW) {
+    const vreal vj = load(v + j), wj = load(w + j), uj = load(u + j);
+    vreal column = load(p + j);
+#pragma unroll
+    for (int r = 0; r < count; ++r) {
+      global real* entry = row + r * pitch + j;
+      const vreal updated = fma(wi[r], vj, fma(vi[r], wj, load(entry)));
+      store(entry, updated);
+      sum[r] = fma(updated, uj, sum[r]);
+      column = fma(ui[r], updated, column);
+    }
+    store(p + j, column);
+  }
+  return block + lane_sums(sum, i);
+}
+
+// A -= v w' + w v' and p = A u for the rows and columns past k.
 inline void update_and_multiply(global real* a, global const real* v, global const real* w,
                                 global const real* u, global real* p, int k, int n, int pitch) {
-  int j = (k + 1) / VW * VW;
-  for (; j + WIDE * VW <= pitch; j += WIDE * VW)
-    update_columns(a, v, w, u, p, k, n, pitch, j, WIDE);
-  for (; j + 2 * VW <= pitch; j += 2 * VW) update_columns(a, v, w, u, p, k, n, pitch, j, 2);
-  for (; j < pitch; j += VW) update_columns(a, v, w, u, p, k, n, pitch, j, 1);
+  zero(p, pitch);
+  for (int i = (k + 1) / ROWS * ROWS; i < n;) {
+    const int end = whole(i) + VW;  // of the rows that share a block on the diagonal
+    vreal block = load(p + whole(i));
+    for (; i + ROWS <= min(end, n); i += ROWS) block += update_rows(a, v, w, u, p, i, pitch, ROWS);
+    // The last rows of all, which have nothing (if pitch > end, zeros) right of their block.
+    for (; i < min(end, n); ++i) block += update_rows(a, v, w, u, p, i, pitch, 1);
+    store(p + end - VW, block);
+  }
   for (int i = 0; i <= k; ++i) p[i] = 0;
 }
 
 // Step k: row k of T, and u, v, w of the update that the next steps still have to do.
 inline real reduce_row(global real* a, global real* u, global real* v, global real* w,
                        global real* p, int k, int n, int pitch) {
-  const real e = reflector(a + k * (size_t)pitch, u, k, n, pitch);
+  const real e = reflector(a + k * (size_t)pitch, u, k, pitch);
   update_and_multiply(a, v, w, u, p, k, n, pitch);
   const real half_product = (real)0.5 * dot_product(p, u, pitch);
   for (int j = 0; j < pitch; j += VW) {
@@ -142,12 +195,12 @@ kernel void tridiagonalise(global const segment_t* segments,  // [segments]
   global real* w = v + pitch;
   global real* p = w + pitch;
 
-  scales[active[item]] = symmetrise(matrix, n, pitch);
+  scales[active[item]] = scale_triangle(matrix, n, pitch);
   zero(v, pitch);
   zero(w, pitch);
   for (int k = 0; k < n; ++k) {
     global real* row = matrix + k * (size_t)pitch;
-    for (int j = k / VW * VW; j < pitch; j += VW)
+    for (int j = whole(k); j < pitch; j += VW)
       store(row + j, load(row + j) - v[k] * load(w + j) - w[k] * load(v + j));
     d[s.vector + n - 1 - k] = row[k];
     if (k < n - 1)
