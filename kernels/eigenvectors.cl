@@ -42,7 +42,7 @@ INLINE void undo_sweep(global real* u, global const real* rotations, int l, int 
 #pragma unroll
   for (int v = 0; v < width; ++v) carried[v] = load(row_of(u, l, n, pitch) + v * VW);
   for (int i = l; i < m; ++i) {
-    const vreal c = rotations[2 * (i - l)], s = rotations[2 * (i - l) + 1];
+    const vreal c = rotations[2 * (m - 1 - i)], s = rotations[2 * (m - 1 - i) + 1];
     global real* row = row_of(u, i, n, pitch);
 #pragma unroll
     for (int v = 0; v < width; ++v) {
@@ -64,7 +64,7 @@ INLINE void undo_two_sweeps(global real* u, global const real* later, int l2,
   vreal ahead[PANEL], behind[PANEL];
   int i = l2;
   if (l1 < l2) {
-    undo_sweep(u, earlier, l1, l2 - 1, n, pitch, width);
+    undo_sweep(u, earlier + 2 * (m - l2 + 1), l1, l2 - 1, n, pitch, width);
 #pragma unroll
     for (int v = 0; v < width; ++v) {
       behind[v] = load(row_of(u, l2 - 1, n, pitch) + v * VW);
@@ -75,13 +75,13 @@ INLINE void undo_two_sweeps(global real* u, global const real* later, int l2,
     for (int v = 0; v < width; ++v) {
       behind[v] = load(row_of(u, l2, n, pitch) + v * VW);
       ahead[v] = load(row_of(u, l2 + 1, n, pitch) + v * VW);
-      ROTATE(later[0], later[1], behind[v], ahead[v]);
+      ROTATE(later[2 * (m - 1 - l2)], later[2 * (m - 1 - l2) + 1], behind[v], ahead[v]);
     }
     ++i;
   }
   for (; i < m; ++i) {
-    const vreal c2 = later[2 * (i - l2)], s2 = later[2 * (i - l2) + 1];
-    const vreal c1 = earlier[2 * (i - 1 - l1)], s1 = earlier[2 * (i - 1 - l1) + 1];
+    const vreal c2 = later[2 * (m - 1 - i)], s2 = later[2 * (m - 1 - i) + 1];
+    const vreal c1 = earlier[2 * (m - i)], s1 = earlier[2 * (m - i) + 1];
     global real* row = row_of(u, i, n, pitch);
 #pragma unroll
     for (int v = 0; v < width; ++v) {
@@ -93,7 +93,7 @@ INLINE void undo_two_sweeps(global real* u, global const real* later, int l2,
       ahead[v] = next;
     }
   }
-  const vreal c = earlier[2 * (m - 1 - l1)], s = earlier[2 * (m - 1 - l1) + 1];
+  const vreal c = earlier[0], s = earlier[1];
 #pragma unroll
   for (int v = 0; v < width; ++v) {
     ROTATE(c, s, behind[v], ahead[v]);

@@ -5,6 +5,9 @@
 // matrices, one to a lane, so that VW such chains share the wait. Lanes go their own ways: each has
 // its own block l .. m of T, and a lane that is not within its block at index i keeps what it has.
 // The result for a matrix does not depend on the other lanes.
+//
+// The rotations of a sweep are appended to the list of its matrix as they come, from m - 1 down to
+// l: (c, s) of rotation i stands 2 (m - 1 - i) reals past the first.
 // Launch: one work-item per VW active segments.
 //
 // Notation: d, e diagonal and off-diagonal of T; rotation i, (c, s), acts on rows i and i + 1.
@@ -21,151 +24,225 @@
     "NEGLIGIBLE is not defined: size of an off-diagonal relative to its neighbours that is dropped"
 #endif
 
+// Contraction is left to no compiler: fma stands where it is meant.
+#pragma OPENCL FP_CONTRACT OFF
+
 // Below this share of T, an off-diagonal is nothing whatever its neighbours are.
 #define NOTHING ((real)1.2325951644078310e-32)
 
+// Below this, a sum of squares has lost digits to underflow; T is of size 1.
+#define NEGLIGIBLE_SQUARES ((real)1e-290)
+
 #if VW == 1
 typedef long vindex;
-#define ANY(mask) (mask)
-#define LANE(v, lane) (v)
-#define SET_LANE(v, lane, value) ((v) = (value))
+#define LANE(type, v, lane) (v)
 #else
 typedef JOIN(long, VW) vindex;
-#define ANY(mask) any(mask)
-#define LANE(v, lane) (((private const long*)&(v))[lane])
-#define SET_LANE(v, lane, value) (((private long*)&(v))[lane] = (value))
+#define LANE(type, v, lane) (((private type*)&(v))[lane])
 #endif
 
-// The block of every lane: rows l .. m of T, the first from l on that has not fallen apart.
-typedef struct {
-  vindex order, l, m;
-  vindex first;                 // row of the first rotation of a sweep: l unless it fell apart
-  vreal d_l, d_next, e_l, d_m;  // d[l], d[l + 1], e[l], d[m]
-  vreal norm;                   // of T: max |d_i| + |e_i|
-} block_of_lanes_t;
+// 1 / sqrt(x) to a unit of rounding. Where the processor has an estimate, good to 2^-14, a power
+// series takes it there, y (1 - h)^(-1/2) with h = 1 - x y^2: half the wait for a root and a
+// division.
+inline vreal inverse_root(vreal x) {
+#if VW == 8 && defined(__AVX512F__)
+  const vreal y = __builtin_ia32_rsqrt14pd512_mask(x, (vreal)0, 0xff);
+  const vreal h = fma(-(x * y), y, (vreal)1);
+  const vreal series =
+      fma(h, fma(h, (vreal)(real)0.3125, (vreal)(real)0.375), (vreal)(real)0.5);
+  return fma(y * h, series, y);
+#else
+  return 1 / sqrt(x);
+#endif
+}
 
-// The tridiagonals of the lanes, interleaved: entry i of all lanes is one vector. An empty lane is
-// a matrix of order 0.
+// VW matrices, one to a lane.
+typedef struct {
+  global real* d;  // of all lanes, interleaved: entry i of all of them is one vector
+  global real* e;
+  vreal floor;  // square of an off-diagonal that is nothing
+  int order[VW], l[VW], m[VW];  // block l .. m of T; m = l: nothing left to do
+  int sweeps[VW], rotations[VW];  // recorded so far
+  global real* list[VW];          // of the rotations of the next sweep
+} lanes_t;
+
+// Where a sweep stands in its lanes.
+typedef struct {
+  vindex first, m;  // `first` is the row of the last rotation: l unless the block falls apart
+  vindex split;     // first row past l that the sweep has split off from the next one
+  vreal sine, cosine, p, g;
+  vreal d_above, e_above, d_done;  // d[i + 1], e[i + 1], both before the rotation, and new d[i + 2]
+} chain_t;
+
+inline int negligible(const lanes_t* t, int lane, int i) {
+  const real e = t->e[i * VW + lane];
+  const real product = fabs(t->d[i * VW + lane] * t->d[(i + 1) * VW + lane]);
+  return e * e <= fmax((real)(NEGLIGIBLE * NEGLIGIBLE) * product, LANE(real, t->floor, lane));
+}
+
+// Moves a lane on to its next block of more than one row, from row l on. It is known that l .. m
+// has not fallen apart, but for its first row; m < l: nothing is known.
+inline void find_block(lanes_t* t, int lane) {
+  const int n = t->order[lane];
+  int l = t->l[lane], m = t->m[lane];
+  if (l < m && negligible(t, lane, l)) ++l;
+  while (l < n && l >= m) {
+    if (l == m) ++l;
+    for (m = l; m < n - 1 && !negligible(t, lane, m);) ++m;
+  }
+  t->l[lane] = l < n ? l : 0;
+  t->m[lane] = l < n ? m : 0;
+}
+
+// The tridiagonals of the lanes and their first blocks. An empty lane is a matrix of order 0.
 inline void gather(global const segment_t* segments, global const int* active, int first, int count,
                    global const int* chosen, global const real* d, global const real* e,
-                   global real* dl, global real* el, int rows, block_of_lanes_t* b) {
+                   global real* rotations, int rows, lanes_t* t) {
   for (int lane = 0; lane < VW; ++lane) {
     const int index = active[first + min(lane, count - 1)];
     const int n = lane < count && chosen[index] ? segments[index].order : 0;
     const long from = segments[index].vector;
-    SET_LANE(b->order, lane, n);
     for (int i = 0; i < rows; ++i) {
-      dl[i * VW + lane] = i < n ? d[from + i] : 0;
-      el[i * VW + lane] = i < n - 1 ? e[from + i] : 0;
+      t->d[i * VW + lane] = i < n ? d[from + i] : 0;
+      t->e[i * VW + lane] = i < n - 1 ? e[from + i] : 0;
     }
+    t->order[lane] = n;
+    t->l[lane] = t->sweeps[lane] = t->rotations[lane] = 0;
+    t->m[lane] = -1;
+    t->list[lane] = rotations + 2 * ROTATIONS_PER_ENTRY * segments[index].square;
   }
-  b->l = b->m = b->first = 0;
-  b->d_l = b->d_next = b->e_l = b->d_m = b->norm = 0;
+  vreal norm = 0;  // max |d_i| + |e_i|
   for (int i = 0; i < rows; ++i)
-    b->norm = fmax(b->norm, fabs(load(dl + i * VW)) + fabs(load(el + i * VW)));
+    norm = fmax(norm, fabs(load(t->d + i * VW)) + fabs(load(t->e + i * VW)));
+  t->floor = (NOTHING * norm) * (NOTHING * norm);
+  for (int lane = 0; lane < VW; ++lane) find_block(t, lane);
 }
 
-// Moves every lane on to its next block from row `from` on, which is at most its l; l is its order
-// when nothing is left. Returns whether
-// any lane has a block. An off-diagonal is negligible relative to its neighbours, or next to
-// nothing at all.
-inline int find_blocks(global const real* d, global const real* e, int from, int rows,
-                       block_of_lanes_t* b) {
-  vindex opened = 0, closed = 0, l = b->order, m = b->order;
-  const vreal floor = NOTHING * b->norm;
-  vreal here = load(d + from * VW);
-  for (int i = from; i < rows; ++i) {
-    const vreal next = load(d + (i + 1) * VW), off = load(e + i * VW);
-    const vindex apart = off * off <= (real)(NEGLIGIBLE * NEGLIGIBLE) * fabs(here) * fabs(next) ||
-                         fabs(off) <= floor || (vindex)i >= b->order - 1;
-    const vindex opens = !opened && !apart && (vindex)i >= b->l;
-    const vindex closes = opened && !closed && apart;
-    l = opens ? (vindex)i : l;
-    b->d_l = opens ? here : b->d_l;
-    b->d_next = opens ? next : b->d_next;
-    b->e_l = opens ? off : b->e_l;
-    m = closes ? (vindex)i : m;
-    b->d_m = closes ? here : b->d_m;
-    opened = opened || opens;
-    closed = closed || closes;
-    here = next;
+INLINE void start_sweep(const lanes_t* t, chain_t* chain, int high) {
+  vreal d_l = 0, d_next = 0, e_l = 1, d_m = 0;
+  for (int lane = 0; lane < VW; ++lane) {
+    const int l = t->l[lane], m = t->m[lane];
+    LANE(long, chain->first, lane) = l;
+    LANE(long, chain->m, lane) = m;
+    if (m == l) continue;
+    LANE(real, d_l, lane) = t->d[l * VW + lane];
+    LANE(real, d_next, lane) = t->d[(l + 1) * VW + lane];
+    LANE(real, e_l, lane) = t->e[l * VW + lane];
+    LANE(real, d_m, lane) = t->d[m * VW + lane];
   }
-  b->l = l;
-  b->m = m;
-  return ANY(opened);
+  const vreal shift = (d_next - d_l) / (2 * e_l);
+  chain->g = d_m - d_l + e_l / (shift + copysign(sqrt(fma(shift, shift, (vreal)1)), shift));
+  chain->sine = chain->cosine = 1;
+  chain->p = chain->d_done = 0;
+  chain->split = chain->m;
+  chain->d_above = load(t->d + high * VW);
+  chain->e_above = load(t->e + high * VW);
 }
 
-// One implicit QL sweep of every lane on its block; the rotations go to c and s.
-inline void sweep(global real* d, global real* e, global real* c, global real* s, int low, int high,
-                  block_of_lanes_t* b) {
-  const vreal shift = (b->d_next - b->d_l) / (2 * b->e_l);
-  vreal g = b->d_m - b->d_l + b->e_l / (shift + copysign(sqrt(fma(shift, shift, (vreal)1)), shift));
-  vreal sine = 1, cosine = 1, p = 0;
-  b->first = b->l;
-  vreal d_above = load(d + high * VW), e_above = load(e + high * VW);  // entries i + 1
-  for (int i = high - 1; i >= low; --i) {
-    const vindex inside = (vindex)i >= b->first && (vindex)i < b->m;
-    const vreal d_here = load(d + i * VW), e_here = load(e + i * VW);
-    const vreal f = sine * e_here, h = cosine * e_here;
-    const vreal r = sqrt(fma(f, f, g * g));
-    const vindex rotated = inside && r != 0;
-    sine = rotated ? f / r : sine;
-    cosine = rotated ? g / r : cosine;
-    const vreal lifted = inside ? d_above - p : d_above;
-    const vreal t = fma(d_here - lifted, sine, 2 * cosine * h);
-    p = rotated ? sine * t : p;
-    g = rotated ? fma(cosine, t, -h) : g;
-    store(d + (i + 1) * VW, rotated ? lifted + p : lifted);
-    store(e + (i + 1) * VW, inside ? ((vindex)(i + 1) < b->m ? r : (vreal)0) : e_above);
-    store(c + i * VW, cosine);
-    store(s + i * VW, sine);
-    // A block that falls apart here ends at i + 1; one that reaches its end keeps what is left
-    // over.
-    const vindex ends = rotated && (vindex)i == b->first;
-    b->first = inside && !rotated ? (vindex)(i + 1) : b->first;
-    d_above = ends ? d_here - p : d_here;
-    e_above = ends ? g : e_here;
+// (c, s) of every lane to list[lane] + at.
+INLINE void append(global real* const* list, long at, vreal c, vreal s) {
+#if VW == 1
+  list[0][at] = c;
+  list[0][at + 1] = s;
+#else
+  vreal even, odd;  // pairs of the even and the odd lanes
+  even.even = c.even;
+  even.odd = s.even;
+  odd.even = c.odd;
+  odd.odd = s.odd;
+#define PUT(lane, pair) *(global JOIN(REAL, 2)*)(list[lane] + at) = pair
+#if VW == 2
+  PUT(0, even);
+  PUT(1, odd);
+#else
+  PUT(0, even.s01);
+  PUT(1, odd.s01);
+  PUT(2, even.s23);
+  PUT(3, odd.s23);
+#if VW == 8
+  PUT(4, even.s45);
+  PUT(5, odd.s45);
+  PUT(6, even.s67);
+  PUT(7, odd.s67);
+#endif
+#endif
+#endif
+}
+
+// Rotation i of every lane. What the next one waits for is short: g, the inverse root, t, g.
+INLINE void rotate(chain_t* b, const lanes_t* t, global real* const* list, int i) {
+  const vindex inside = (vindex)i >= b->first && (vindex)i < b->m;
+  const vindex inner = inside && (vindex)(i + 1) < b->m;
+  const vreal d_here = load(t->d + i * VW), e_here = load(t->e + i * VW);
+  const vreal f = b->sine * e_here, h = b->cosine * e_here;
+  const vreal squares = fma(b->g, b->g, f * f), inverse = inverse_root(squares);
+  const vindex rotated = inside && !(squares <= NEGLIGIBLE_SQUARES);
+  const vreal lifted = inside ? b->d_above - b->p : b->d_above;
+  const vreal turn = fma(d_here - lifted, f, 2 * h * b->g) * inverse;
+  b->sine = rotated ? f * inverse : b->sine;
+  b->cosine = rotated ? b->g * inverse : b->cosine;
+  b->p = rotated ? b->sine * turn : b->p;
+  b->g = rotated ? fma(b->cosine, turn, -h) : b->g;
+  append(list, -2 * (long)i, b->cosine, b->sine);
+
+  const vreal d_new = rotated ? lifted + b->p : lifted;
+  const vreal product = (real)(NEGLIGIBLE * NEGLIGIBLE) * fabs(d_new * b->d_done);
+  b->split = inner && squares <= fmax(product, t->floor) ? (vindex)(i + 1) : b->split;
+  store(t->d + (i + 1) * VW, d_new);
+  store(t->e + (i + 1) * VW,
+        inside ? (inner && rotated ? squares * inverse : (vreal)0) : b->e_above);
+  b->d_done = d_new;
+  // A block that falls apart here ends at i + 1; one that reaches its end keeps what is left over.
+  const vindex ends = rotated && (vindex)i == b->first;
+  b->first = inside && !rotated ? (vindex)(i + 1) : b->first;
+  b->d_above = ends ? d_here - b->p : d_here;
+  b->e_above = ends ? b->g : e_here;
+}
+
+// One implicit QL sweep of every lane on its block, all within rows low .. high. A lane that is not
+// in its block yet writes its rotations to `dump`; one that is past it, behind those of the sweep.
+INLINE void sweep(const lanes_t* t, chain_t* chain, global real* dump, int low, int high) {
+  start_sweep(t, chain, high);
+  for (int from = high, to = low; from > low; from = to, to = low) {
+    global real* list[VW];
+#pragma unroll
+    for (int lane = 0; lane < VW; ++lane) {
+      const int m = t->m[lane], begun = m >= from;
+      list[lane] = begun ? t->list[lane] + 2 * (m - 1) : dump + 2 * (high - 1);
+      to = begun ? to : max(to, m);
+    }
+    for (int i = from - 1; i >= to; --i) rotate(chain, t, list, i);
   }
-  store(d + low * VW, d_above);
-  store(e + low * VW, e_above);
+  store(t->d + low * VW, chain->d_above);
+  store(t->e + low * VW, chain->e_above);
 }
 
-// What has been recorded of every lane so far.
-typedef struct {
-  int sweeps[VW], rotations[VW];
-} counts_t;
-
-// Appends the rotations first .. m - 1 of one lane to the lists of its segment. Returns 0, and
-// appends nothing, if there is no room left: QL does not converge.
-inline int record(const block_of_lanes_t* b, int lane, const segment_t s, global const real* c,
-                  global const real* sines, global real* rotations, global int* sweeps,
-                  counts_t* counts) {
-  const int begin = LANE(b->first, lane), m = LANE(b->m, lane);
+// Records the sweep that a lane has done and finds its next block. Returns 0 if there is no room
+// for the rotations of another: QL does not converge.
+inline int finish_sweep(lanes_t* t, const chain_t* chain, int lane, const segment_t s,
+                        global int* sweeps) {
+  const int first = LANE(long, chain->first, lane), m = t->m[lane];
+  global int* done = sweeps + 2 * (SWEEPS_PER_ROW * s.vector + t->sweeps[lane]);
+  done[0] = first;
+  done[1] = m;
+  t->sweeps[lane] += 1;
+  t->rotations[lane] += m - first;
+  t->list[lane] += 2 * (m - first);
+  t->m[lane] = LANE(long, chain->split, lane);
+  find_block(t, lane);
   const long room = (long)ROTATIONS_PER_ENTRY * s.order * s.order_pitch;
-  if (counts->sweeps[lane] >= SWEEPS_PER_ROW * s.order_pitch ||
-      counts->rotations[lane] + m - begin > room)
-    return 0;
-  global real* list = rotations + 2 * (ROTATIONS_PER_ENTRY * s.square + counts->rotations[lane]);
-  for (int i = begin; i < m; ++i) {
-    list[2 * (i - begin)] = c[i * VW + lane];
-    list[2 * (i - begin) + 1] = sines[i * VW + lane];
-  }
-  global int* sweep = sweeps + 2 * (SWEEPS_PER_ROW * s.vector + counts->sweeps[lane]);
-  sweep[0] = begin;
-  sweep[1] = m;
-  counts->rotations[lane] += m - begin;
-  counts->sweeps[lane] += 1;
-  return 1;
+  return t->m[lane] == t->l[lane] || (t->sweeps[lane] < SWEEPS_PER_ROW * s.order_pitch &&
+                                      t->rotations[lane] + t->m[lane] <= room);
 }
 
 // The eigenvalues by decreasing value, and where in T each of them stands; equal values keep their
-// order.
+// order. QL leaves them by increasing value as a rule, hence from the last.
 inline void sort_values(global const real* d, int lane, real scale, int n, int pitch,
                         global real* values, global int* places) {
-  for (int i = 0; i < n; ++i) {
+  for (int i = n - 1; i >= 0; --i) {
     const real value = scale * d[i * VW + lane];
-    int rank = i;
-    for (; rank > 0 && values[rank - 1] < value; --rank) {
+    int rank = n - 1 - i;
+    for (; rank > 0 && values[rank - 1] <= value; --rank) {
       values[rank] = values[rank - 1];
       places[rank] = places[rank - 1];
     }
@@ -193,39 +270,35 @@ kernel void diagonalise(global const segment_t* segments,  // [segments]
   const int first = VW * get_global_id(0);
   if (first >= active_count) return;
   const int count = min(VW, active_count - first);
-  global real* dl = scratch + 4 * (size_t)(rows + 1) * VW * get_global_id(0);
-  global real* el = dl + (rows + 1) * VW;
-  global real* c = el + (rows + 1) * VW;
-  global real* s = c + (rows + 1) * VW;
-  block_of_lanes_t b;
-  gather(segments, active, first, count, chosen, d, e, dl, el, rows + 1, &b);
-  counts_t counts;
-  for (int lane = 0; lane < VW; ++lane) counts.sweeps[lane] = counts.rotations[lane] = 0;
-
-  int low = 0;
-  while (find_blocks(dl, el, low, rows, &b)) {
-    int high = 0;
-    low = rows;
-    for (int lane = 0; lane < count; ++lane) {
-      if (LANE(b.l, lane) >= LANE(b.order, lane)) continue;
-      low = min(low, (int)LANE(b.l, lane));
-      high = max(high, (int)LANE(b.m, lane));
+  lanes_t lanes;
+  lanes.d = scratch + 4 * (size_t)(rows + 1) * VW * get_global_id(0);
+  lanes.e = lanes.d + (rows + 1) * VW;
+  global real* dump = lanes.e + (rows + 1) * VW;
+  gather(segments, active, first, count, chosen, d, e, rotations, rows + 1, &lanes);
+  for (;;) {
+    int low = rows, high = 0;
+    for (int lane = 0; lane < VW; ++lane) {
+      if (lanes.m[lane] == lanes.l[lane]) continue;
+      low = min(low, lanes.l[lane]);
+      high = max(high, lanes.m[lane]);
     }
-    sweep(dl, el, c, s, low, high, &b);
-    for (int lane = 0; lane < count; ++lane) {
-      if (LANE(b.l, lane) >= LANE(b.order, lane)) continue;
+    if (high == 0) break;
+    chain_t chain;
+    sweep(&lanes, &chain, dump, low, high);
+    for (int lane = 0; lane < VW; ++lane) {
+      if (lanes.m[lane] == lanes.l[lane]) continue;
       const int index = active[first + lane];
-      if (record(&b, lane, segments[index], c, s, rotations, sweeps, &counts)) continue;
+      if (finish_sweep(&lanes, &chain, lane, segments[index], sweeps)) continue;
       failed[index] = 1;
-      SET_LANE(b.order, lane, 0);  // takes no more part
+      lanes.l[lane] = lanes.m[lane] = 0;  // takes no more part
     }
   }
   for (int lane = 0; lane < count; ++lane) {
     const int index = active[first + lane];
     const segment_t segment = segments[index];
     if (!chosen[index]) continue;
-    sweep_counts[index] = counts.sweeps[lane];
-    sort_values(dl, lane, scales[index], segment.order, segment.order_pitch,
+    sweep_counts[index] = lanes.sweeps[lane];
+    sort_values(lanes.d, lane, scales[index], segment.order, segment.order_pitch,
                 values + segment.vector, places + segment.vector);
   }
 }
