@@ -27,12 +27,13 @@ inline global real* row_of(global real* u, int i, int n, int pitch) {
   return u + (n - 1 - i) * (size_t)pitch;
 }
 
-// (a, b) <- (c a + s b, c b - s a)
-#define ROTATE(c, s, a, b)         \
-  {                                \
-    const vreal was = a;           \
-    a = fma(c, was, (s) * (b));    \
-    b = fma(-(s), was, (c) * (b)); \
+// (a, b) <- (c a + s b, c b - s a), in three steps instead of four products, p = s / (1 + c):
+//   a += p b,  b -= s a,  a += p b
+#define ROTATE(p, s, a, b) \
+  {                        \
+    a = fma(p, b, a);      \
+    b = fma(-(s), a, b);   \
+    a = fma(p, b, a);      \
   }
 
 // Rows l .. m: one sweep, backwards; rotation i acts on rows i and i + 1.
@@ -42,12 +43,12 @@ INLINE void undo_sweep(global real* u, global const real* rotations, int l, int 
 #pragma unroll
   for (int v = 0; v < width; ++v) carried[v] = load(row_of(u, l, n, pitch) + v * VW);
   for (int i = l; i < m; ++i) {
-    const vreal c = rotations[2 * (m - 1 - i)], s = rotations[2 * (m - 1 - i) + 1];
+    const vreal p = rotations[2 * (m - 1 - i)], s = rotations[2 * (m - 1 - i) + 1];
     global real* row = row_of(u, i, n, pitch);
 #pragma unroll
     for (int v = 0; v < width; ++v) {
       vreal next = load(row - pitch + v * VW);
-      ROTATE(c, s, carried[v], next);
+      ROTATE(p, s, carried[v], next);
       store(row + v * VW, carried[v]);
       carried[v] = next;
     }
@@ -80,23 +81,23 @@ INLINE void undo_two_sweeps(global real* u, global const real* later, int l2,
     ++i;
   }
   for (; i < m; ++i) {
-    const vreal c2 = later[2 * (m - 1 - i)], s2 = later[2 * (m - 1 - i) + 1];
-    const vreal c1 = earlier[2 * (m - i)], s1 = earlier[2 * (m - i) + 1];
+    const vreal p2 = later[2 * (m - 1 - i)], s2 = later[2 * (m - 1 - i) + 1];
+    const vreal p1 = earlier[2 * (m - i)], s1 = earlier[2 * (m - i) + 1];
     global real* row = row_of(u, i, n, pitch);
 #pragma unroll
     for (int v = 0; v < width; ++v) {
       vreal next = load(row - pitch + v * VW);
-      ROTATE(c2, s2, ahead[v], next);
-      ROTATE(c1, s1, behind[v], ahead[v]);
+      ROTATE(p2, s2, ahead[v], next);
+      ROTATE(p1, s1, behind[v], ahead[v]);
       store(row + pitch + v * VW, behind[v]);
       behind[v] = ahead[v];
       ahead[v] = next;
     }
   }
-  const vreal c = earlier[0], s = earlier[1];
+  const vreal p = earlier[0], s = earlier[1];
 #pragma unroll
   for (int v = 0; v < width; ++v) {
-    ROTATE(c, s, behind[v], ahead[v]);
+    ROTATE(p, s, behind[v], ahead[v]);
     store(row_of(u, m - 1, n, pitch) + v * VW, behind[v]);
     store(row_of(u, m, n, pitch) + v * VW, ahead[v]);
   }
@@ -190,7 +191,7 @@ kernel void eigenvectors(global const segment_t* segments,  // [segments]
                          global const int* active,          // [active segments]
                          global const int* wanted,          // [segments]: leading vectors wanted
                          global const real* reflectors,     // u_k in row k
-                         global const real* rotations,      // (c, s), ROTATIONS_PER_ENTRY per entry
+                         global const real* rotations,      // (p, s), ROTATIONS_PER_ENTRY per entry
                          global const int* sweeps,          // first, m; SWEEPS_PER_ROW per row
                          global const int* sweep_counts,    // [segments]
                          global const int* places,          // `order` per segment
@@ -198,19 +199,31 @@ kernel void eigenvectors(global const segment_t* segments,  // [segments]
                          global real* z) {  // the vectors in its leading rows; others are kept
   const int index = active[get_global_id(1)];
   const segment_t s = segments[index];
-  const int first = get_global_id(0) * PANEL * VW;
   const int last = min(wanted[index], s.order);
-  if (first >= last) return;
-  global const int* list = sweeps + 2 * SWEEPS_PER_ROW * s.vector;
-  const int vectors = (min(last - first, PANEL * VW) + VW - 1) / VW;
-  // Loops over the vectors of a panel unroll into registers only if their number is a constant.
-  if (vectors == PANEL)
-    transform(s, panels + s.square + first, reflectors + s.square,
-              rotations + 2 * (size_t)ROTATIONS_PER_ENTRY * s.square, list, sweep_counts[index],
-              places + s.vector, z + s.square, first, last, PANEL);
-  else
-    for (int v = 0; v < vectors; ++v)
-      transform(s, panels + s.square + first + v * VW, reflectors + s.square,
-                rotations + 2 * (size_t)ROTATIONS_PER_ENTRY * s.square, list, sweep_counts[index],
-                places + s.vector, z + s.square, first + v * VW, last, 1);
+  // As few panels as possible, of equal size as far as may be.
+  const int vectors = (last + VW - 1) / VW, panel_count = (vectors + PANEL - 1) / PANEL;
+  const int panel = get_global_id(0);
+  if (panel >= panel_count) return;
+  const int end = vectors * (panel + 1) / panel_count;
+  // Loops over the vectors of a panel unroll into registers only if their number is a constant (at
+  // most PANEL, in branches that are never taken, too).
+#define TRANSFORM(width)                                                                    \
+  transform(s, panels + s.square + v * VW, reflectors + s.square,                           \
+            rotations + 2 * (size_t)ROTATIONS_PER_ENTRY * s.square,                         \
+            sweeps + 2 * SWEEPS_PER_ROW * s.vector, sweep_counts[index], places + s.vector, \
+            z + s.square, v * VW, last, width);                                             \
+  v += width
+  for (int v = vectors * panel / panel_count; v < end;) {
+    if (end - v >= PANEL) {
+      TRANSFORM(PANEL);
+    } else if (PANEL > 4 && end - v >= 4) {
+      TRANSFORM(min(4, PANEL));
+    } else if (PANEL > 3 && end - v >= 3) {
+      TRANSFORM(min(3, PANEL));
+    } else if (PANEL > 2 && end - v >= 2) {
+      TRANSFORM(min(2, PANEL));
+    } else {
+      TRANSFORM(1);
+    }
+  }
 }

@@ -7,8 +7,9 @@
 // The result for a matrix does not depend on the other lanes.
 //
 // The rotations of a sweep are appended to the list of its matrix as they come, from m - 1 down to
-// l: (c, s) of rotation i stands 2 (m - 1 - i) reals past the first.
-// Launch: one work-item per VW active segments.
+// l: (p, s) of rotation i stands 2 (m - 1 - i) reals past the first, p = tan(angle / 2) = s / (1 +
+// c). The sign of the off-diagonals is chosen so that no cosine is negative, thus |p| <= 1. Launch:
+// one work-item per VW active segments.
 //
 // Notation: d, e diagonal and off-diagonal of T; rotation i, (c, s), acts on rows i and i + 1.
 
@@ -48,11 +49,21 @@ inline vreal inverse_root(vreal x) {
 #if VW == 8 && defined(__AVX512F__)
   const vreal y = __builtin_ia32_rsqrt14pd512_mask(x, (vreal)0, 0xff);
   const vreal h = fma(-(x * y), y, (vreal)1);
-  const vreal series =
-      fma(h, fma(h, (vreal)(real)0.3125, (vreal)(real)0.375), (vreal)(real)0.5);
+  const vreal series = fma(h, fma(h, (vreal)(real)0.3125, (vreal)(real)0.375), (vreal)(real)0.5);
   return fma(y * h, series, y);
 #else
   return 1 / sqrt(x);
+#endif
+}
+
+// 1 / x for 1 <= x <= 2, to a unit of rounding.
+inline vreal inverse(vreal x) {
+#if VW == 8 && defined(__AVX512F__)
+  const vreal y = __builtin_ia32_rcp14pd512_mask(x, (vreal)0, 0xff);
+  const vreal h = fma(-x, y, (vreal)1);
+  return fma(y * h, fma(h, fma(h, (vreal)1, (vreal)1), (vreal)1), y);
+#else
+  return 1 / x;
 #endif
 }
 
@@ -60,8 +71,8 @@ inline vreal inverse_root(vreal x) {
 typedef struct {
   global real* d;  // of all lanes, interleaved: entry i of all of them is one vector
   global real* e;
-  vreal floor;  // square of an off-diagonal that is nothing
-  int order[VW], l[VW], m[VW];  // block l .. m of T; m = l: nothing left to do
+  vreal floor;                    // square of an off-diagonal that is nothing
+  int order[VW], l[VW], m[VW];    // block l .. m of T; m = l: nothing left to do
   int sweeps[VW], rotations[VW];  // recorded so far
   global real* list[VW];          // of the rotations of the next sweep
 } lanes_t;
@@ -139,16 +150,16 @@ INLINE void start_sweep(const lanes_t* t, chain_t* chain, int high) {
   chain->e_above = load(t->e + high * VW);
 }
 
-// (c, s) of every lane to list[lane] + at.
-INLINE void append(global real* const* list, long at, vreal c, vreal s) {
+// (p, s) of every lane to list[lane] + at.
+INLINE void append(global real* const* list, long at, vreal p, vreal s) {
 #if VW == 1
-  list[0][at] = c;
+  list[0][at] = p;
   list[0][at + 1] = s;
 #else
   vreal even, odd;  // pairs of the even and the odd lanes
-  even.even = c.even;
+  even.even = p.even;
   even.odd = s.even;
-  odd.even = c.odd;
+  odd.even = p.odd;
   odd.odd = s.odd;
 #define PUT(lane, pair) *(global JOIN(REAL, 2)*)(list[lane] + at) = pair
 #if VW == 2
@@ -175,22 +186,22 @@ INLINE void rotate(chain_t* b, const lanes_t* t, global real* const* list, int i
   const vindex inner = inside && (vindex)(i + 1) < b->m;
   const vreal d_here = load(t->d + i * VW), e_here = load(t->e + i * VW);
   const vreal f = b->sine * e_here, h = b->cosine * e_here;
-  const vreal squares = fma(b->g, b->g, f * f), inverse = inverse_root(squares);
+  const vreal squares = fma(b->g, b->g, f * f);
+  const vreal root = copysign(inverse_root(squares), b->g);  // of the sign of g, inverse
   const vindex rotated = inside && !(squares <= NEGLIGIBLE_SQUARES);
   const vreal lifted = inside ? b->d_above - b->p : b->d_above;
-  const vreal turn = fma(d_here - lifted, f, 2 * h * b->g) * inverse;
-  b->sine = rotated ? f * inverse : b->sine;
-  b->cosine = rotated ? b->g * inverse : b->cosine;
+  const vreal turn = fma(d_here - lifted, f, 2 * h * b->g) * root;
+  b->sine = rotated ? f * root : b->sine;
+  b->cosine = rotated ? b->g * root : b->cosine;
   b->p = rotated ? b->sine * turn : b->p;
   b->g = rotated ? fma(b->cosine, turn, -h) : b->g;
-  append(list, -2 * (long)i, b->cosine, b->sine);
+  append(list, -2 * (long)i, b->sine * inverse(1 + b->cosine), b->sine);
 
   const vreal d_new = rotated ? lifted + b->p : lifted;
   const vreal product = (real)(NEGLIGIBLE * NEGLIGIBLE) * fabs(d_new * b->d_done);
   b->split = inner && squares <= fmax(product, t->floor) ? (vindex)(i + 1) : b->split;
   store(t->d + (i + 1) * VW, d_new);
-  store(t->e + (i + 1) * VW,
-        inside ? (inner && rotated ? squares * inverse : (vreal)0) : b->e_above);
+  store(t->e + (i + 1) * VW, inside ? (inner && rotated ? squares * root : (vreal)0) : b->e_above);
   b->d_done = d_new;
   // A block that falls apart here ends at i + 1; one that reaches its end keeps what is left over.
   const vindex ends = rotated && (vindex)i == b->first;
@@ -261,7 +272,7 @@ kernel void diagonalise(global const segment_t* segments,  // [segments]
                         global const real* e,       // `order` - 1 per segment
                         global const real* scales,  // [segments]
                         global real* scratch,       // 4 x (rows + 1) x VW per work-item
-                        global real* rotations,     // (c, s), ROTATIONS_PER_ENTRY per entry
+                        global real* rotations,     // (p, s), ROTATIONS_PER_ENTRY per entry
                         global int* sweeps,         // first, m; SWEEPS_PER_ROW per row
                         global int* sweep_counts,   // [segments]
                         global real* values,        // `order` per segment

@@ -16,7 +16,7 @@ constexpr int sweeps_per_row = 4;
 constexpr int rotations_per_entry = 2;
 // Vectors of `order` entries the reduction works with: v, w, p.
 constexpr std::size_t scratch_vectors = 3;
-// Rows of interleaved scratch of QL: d, e, c, s.
+// Vectors of interleaved scratch of QL: d, e, and two for rotations that are not part of any sweep.
 constexpr std::size_t lane_vectors = 4;
 
 Defines eigen_defines(const Device& device, int panel, double negligible) {
