@@ -47,6 +47,51 @@ TEST(Profile, CountsCallsTimeAndWork) {
   EXPECT_FALSE(kernels[1].work) << "the work of one of its launches is not known";
 }
 
+TEST(BusyTime, CountsOverlapsOnceInAnyOrder) {
+  BusyTime busy;
+  EXPECT_EQ(busy.seconds(), 0);
+
+  busy.add(30'000'000'000, 31'000'000'000);
+  busy.add(10'000'000'000, 14'000'000'000);
+  busy.add(12'000'000'000, 15'000'000'000);
+  busy.add(13'000'000'000, 14'000'000'000);
+
+  EXPECT_DOUBLE_EQ(busy.seconds(), 6);
+  busy.add(31'000'000'000, 31'500'000'000);
+  EXPECT_DOUBLE_EQ(busy.seconds(), 6.5);
+}
+
+TEST(BusyTime, StaysExactWhenMoreComesThanIsReordered) {
+  BusyTime busy;
+  constexpr std::uint64_t spans = 3 * BusyTime::reordered;
+
+  for (std::uint64_t i = 0; i < spans; ++i) {
+    const std::uint64_t begin = 1000 * (i ^ 1);  // neighbours swapped
+    busy.add(begin, begin + 500);
+  }
+
+  EXPECT_NEAR(busy.seconds(), 500e-9 * spans, 1e-12);
+}
+
+TEST(Profile, OfAnotherQueueIsThatOfTheDevice) {
+  const Device& device = profiled_device();
+  const Device another(device, Device::AnotherQueue{});
+  device.profile()->clear();
+  Kernel here(Program(device, source, defines), "fill");
+  Kernel there(Program(another, source, defines), "fill");
+  Buffer<double> x(device, 64), y(another, 64);
+  std::vector<double> values(64);
+
+  here(Grid{.x = 64}, x, 1.0);
+  there(Grid{.x = 64}, y, 2.0);
+  y.read(values);
+
+  EXPECT_EQ(values.front(), 2);
+  EXPECT_NE(another.queue()(), device.queue()());
+  EXPECT_EQ(another.profile(), device.profile());
+  EXPECT_EQ(device.profile()->kernels().at(0).calls, 2);
+}
+
 TEST(Profile, IsNotThereAndAsksForNoWorkUnlessItIsOn) {
   const Program program(test::device(), source, defines);
   Kernel clear(program, "clear");

@@ -120,6 +120,11 @@ Candidate choose(std::string_view selection) {
   throw DeviceError(fmt::format("no OpenCL device matches '{}' (found: {})", selection, found));
 }
 
+cl::CommandQueue queue_of(const cl::Context& context, const cl::Device& device,
+                          const Profile* profile) {
+  return {context, device, profile ? CL_QUEUE_PROFILING_ENABLE : cl_command_queue_properties{0}};
+}
+
 }  // namespace
 
 std::string to_string(DeviceKind kind) {
@@ -150,14 +155,27 @@ std::string describe(const DeviceInfo& info) {
 }
 
 Device::Device(std::string_view selection, Profiling profiling)
-    : profile_(profiling == Profiling::on ? std::make_unique<Profile>() : nullptr) {
+    : own_profile_(profiling == Profiling::on ? std::make_unique<Profile>() : nullptr),
+      own_programs_(std::make_unique<BuiltPrograms>()),
+      profile_(own_profile_.get()),
+      programs_(own_programs_.get()) {
   translate_opencl_errors("to open the device", [&] {
     Candidate chosen = choose(selection);
     info_ = std::move(chosen.info);
     device_ = chosen.device;
     context_ = cl::Context(device_);
-    queue_ = cl::CommandQueue(context_, device_, profile_ ? CL_QUEUE_PROFILING_ENABLE : 0);
+    queue_ = queue_of(context_, device_, profile_);
   });
+}
+
+Device::Device(const Device& first, AnotherQueue)
+    : info_(first.info_),
+      device_(first.device_),
+      context_(first.context_),
+      profile_(first.profile_),
+      programs_(first.programs_) {
+  translate_opencl_errors("to make another queue on " + info_.name,
+                          [&] { queue_ = queue_of(context_, device_, profile_); });
 }
 
 void Device::finish() const {

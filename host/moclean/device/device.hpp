@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -46,14 +48,37 @@ std::string describe(const DeviceInfo& info);
 /// Whether the time of every launch is taken, which needs another kind of queue.
 enum class Profiling { off, on };
 
+/// Programs that were built for a context, by source and options: building one takes some 20 ms
+/// even where the driver has kept its binary. Threads may share it.
+class BuiltPrograms {
+ public:
+  /// What `build` returned for this key when it was called first; nothing is kept if it throws.
+  /// Others wait while it builds.
+  template <class Build>
+  cl::Program find_or_build(const std::string& key, const Build& build) {
+    const std::lock_guard lock(mutex_);
+    const auto found = programs_.find(key);
+    return found != programs_.end() ? found->second : programs_.emplace(key, build()).first->second;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::string, cl::Program> programs_;
+};
+
 /// An OpenCL device with a context and an in-order queue of its own. Not copyable; buffers, kernels
-/// and programs keep what they need of it alive.
+/// and programs keep what they need of it alive. One thread at a time may use its queue.
 class Device {
  public:
   /// Opens the device that `selection` names: empty (best: fp64 before none, GPU before CPU),
   /// `cpu`, `gpu`, `P:D` (platform and device index), or a fragment of its or its platform's name
   /// in any case. Throws DeviceError listing what there is if none matches; there is no fall-back.
   explicit Device(std::string_view selection = {}, Profiling profiling = Profiling::off);
+
+  /// The same device, context, programs and profile with a queue of its own: what one thread
+  /// enqueues here runs beside what another enqueues on `first`, which has to outlive this.
+  struct AnotherQueue {};
+  Device(const Device& first, AnotherQueue);
 
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
@@ -63,8 +88,11 @@ class Device {
   const cl::CommandQueue& queue() const { return queue_; }
   const cl::Device& handle() const { return device_; }
 
-  /// The launches so far; null unless the device was opened with Profiling::on.
-  Profile* profile() const { return profile_.get(); }
+  /// The launches so far, of all its queues; null unless the device was opened with Profiling::on.
+  Profile* profile() const { return profile_; }
+
+  /// The programs of its context.
+  BuiltPrograms& programs() const { return *programs_; }
 
   /// Waits until everything enqueued is done.
   void finish() const;
@@ -74,7 +102,10 @@ class Device {
   cl::Device device_;
   cl::Context context_;
   cl::CommandQueue queue_;
-  std::unique_ptr<Profile> profile_;
+  std::unique_ptr<Profile> own_profile_;         // of the first queue
+  std::unique_ptr<BuiltPrograms> own_programs_;  // of the first queue
+  Profile* profile_;
+  BuiltPrograms* programs_;
 };
 
 }  // namespace moclean

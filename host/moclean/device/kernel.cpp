@@ -19,21 +19,28 @@ std::size_t whole_groups(std::size_t items, std::size_t group) {
   return (items + group - 1) / group * group;
 }
 
+cl::Program build(const Device& device, const std::string& text, const std::string& options) {
+  cl::Program program = translate_opencl_errors("to load a program on " + device.info().name, [&] {
+    return cl::Program(device.context(), text);
+  });
+  try {
+    program.build({device.handle()}, options.c_str());
+  } catch (const cl::Error& error) {
+    const auto log = program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.handle());
+    throw DeviceError(fmt::format("OpenCL compiler of {} failed ({}) with options {}:\n{}",
+                                  device.info().name, opencl_status(error.err()), options, log));
+  }
+  return program;
+}
+
 }  // namespace
 
 Program::Program(const Device& device, std::string_view source, const Defines& defines)
     : device_(&device) {
   const std::string options = options_of(defines);
   const std::string text = std::string(kernel_source::prelude) + std::string(source);
-  translate_opencl_errors("to load a program on " + device.info().name,
-                          [&] { program_ = cl::Program(device.context(), text); });
-  try {
-    program_.build({device.handle()}, options.c_str());
-  } catch (const cl::Error& error) {
-    const auto log = program_.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.handle());
-    throw DeviceError(fmt::format("OpenCL compiler of {} failed ({}) with options {}:\n{}",
-                                  device.info().name, opencl_status(error.err()), options, log));
-  }
+  program_ = device.programs().find_or_build(options + '\n' + text,
+                                             [&] { return build(device, text, options); });
 }
 
 Kernel::Kernel(const Program& program, const std::string& name)

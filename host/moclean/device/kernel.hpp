@@ -15,8 +15,8 @@ using Defines = std::map<std::string, std::string>;
 /// A compiled kernel file (with kernels/prelude.cl before it).
 class Program {
  public:
-  /// Compiles `source` for the device. Throws DeviceError with device, options and the compiler's
-  /// log, whose file and line numbers are those of the .cl files.
+  /// Compiles `source` for the device, once for all its queues. Throws DeviceError with device,
+  /// options and the compiler's log, whose file and line numbers are those of the .cl files.
   Program(const Device& device, std::string_view source, const Defines& defines);
 
   const Device& device() const { return *device_; }
@@ -41,7 +41,8 @@ struct LocalMemory {
   std::size_t size = 0;
 };
 
-/// A kernel and the queue it runs on: `kernel(Grid{.x = n}, buffer, 3, 0.5)`.
+/// A kernel and the queue it runs on: `kernel(Grid{.x = n}, buffer, 3, 0.5)`. It holds the
+/// arguments of a launch, so every thread needs one of its own.
 class Kernel {
  public:
   Kernel(const Program& program, const std::string& name);

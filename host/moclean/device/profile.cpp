@@ -14,8 +14,28 @@ bool is_over(const cl::Event& event) {
 
 }  // namespace
 
+void BusyTime::Union::add(const Span& span) {
+  if (span.end <= end) return;
+  time += span.end - std::max(span.begin, end);
+  end = span.end;
+}
+
+void BusyTime::add(std::uint64_t begin, std::uint64_t end) {
+  recent_.push({begin, end});
+  if (recent_.size() <= reordered) return;
+  before_.add(recent_.top());
+  recent_.pop();
+}
+
+double BusyTime::seconds() const {
+  Union all = before_;
+  for (auto left = recent_; !left.empty(); left.pop()) all.add(left.top());
+  return 1e-9 * static_cast<double>(all.time);
+}
+
 void Profile::record(const std::string& kernel, const cl::Event& event,
                      const std::optional<Work>& work) {
+  const std::lock_guard lock(mutex_);
   KernelProfile& profile = kernels_[kernel];
   if (profile.calls == 0) {
     profile.kernel = kernel;
@@ -37,25 +57,39 @@ void Profile::add_oldest() {
   const cl_ulong begin = launch.event.getProfilingInfo<CL_PROFILING_COMMAND_START>();
   const cl_ulong end = launch.event.getProfilingInfo<CL_PROFILING_COMMAND_END>();
   launch.kernel->seconds += 1e-9 * static_cast<double>(end - begin);
+  busy_.add(begin, end);
   pending_.pop_front();
 }
 
-std::vector<KernelProfile> Profile::kernels() {
+void Profile::add_pending() {
   translate_opencl_errors("to profile kernels", [&] {
     while (!pending_.empty()) {
       pending_.front().event.wait();
       add_oldest();
     }
   });
+}
+
+std::vector<KernelProfile> Profile::kernels() {
+  const std::lock_guard lock(mutex_);
+  add_pending();
   std::vector<KernelProfile> all;
   for (const auto& [name, profile] : kernels_) all.push_back(profile);
   std::ranges::stable_sort(all, std::ranges::greater{}, &KernelProfile::seconds);
   return all;
 }
 
+double Profile::busy_seconds() {
+  const std::lock_guard lock(mutex_);
+  add_pending();
+  return busy_.seconds();
+}
+
 void Profile::clear() {
-  kernels();
+  const std::lock_guard lock(mutex_);
+  add_pending();
   kernels_.clear();
+  busy_ = {};
 }
 
 }  // namespace moclean
