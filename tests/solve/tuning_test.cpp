@@ -106,7 +106,8 @@ TEST(Tuning, GroupFormDoesNotDependOnTheNeighbours) {
 TEST(Tuning, OutOfItsRangeIsRejected) {
   for (const Tuning& tuning :
        {Tuning{.tile_rows = 0}, Tuning{.tile_rows = 17}, Tuning{.tile_vectors = 9},
-        Tuning{.sweep_rows = 257}, Tuning{.panel = 0}, Tuning{.batch_segments = -1}})
+        Tuning{.sweep_rows = 257}, Tuning{.panel = 0}, Tuning{.batch_segments = -1},
+        Tuning{.queues = 0}, Tuning{.queues = 65}})
     EXPECT_THROW(OpenClBackend(test::device(), {.tuning = tuning}), ArgumentError);
 }
 
@@ -117,6 +118,21 @@ TEST(Tuning, DefaultFormOfTheEigensolverFollowsTheKindOfDevice) {
 
   EXPECT_EQ(default_tuning(cpu).eigen, EigenForm::lanes);
   EXPECT_EQ(default_tuning(gpu).eigen, EigenForm::group);
+}
+
+TEST(Tuning, DefaultQueuesFollowTheComputeUnitsOfACpu) {
+  const auto queues = [](DeviceKind kind, int compute_units) {
+    DeviceInfo info;
+    info.kind = kind;
+    info.compute_units = compute_units;
+    return default_tuning(info).queues;
+  };
+
+  EXPECT_EQ(queues(DeviceKind::cpu, 1), 1);
+  EXPECT_EQ(queues(DeviceKind::cpu, 2), 2);
+  EXPECT_EQ(queues(DeviceKind::cpu, 64), 4);
+  EXPECT_EQ(queues(DeviceKind::gpu, 64), 1);
+  EXPECT_EQ(queues(DeviceKind::other, 64), 1);
 }
 
 TEST(Tuning, ForProductsOfALibraryServesMixedPrecisionWithOurOwn) {

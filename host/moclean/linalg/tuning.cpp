@@ -1,5 +1,6 @@
 #include "moclean/linalg/tuning.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include <fmt/format.h>
@@ -14,6 +15,10 @@ void require(const char* name, std::int64_t value, std::int64_t least, std::int6
     throw ArgumentError(
         fmt::format("tuning: {} is {}, expected {} to {}", name, value, least, most));
 }
+
+/// Each queue has a batch in the cache and a host thread that mostly waits; past four, the batches
+/// that share the cache become too small to fill vector lanes.
+constexpr int most_default_queues = 4;
 
 }  // namespace
 
@@ -39,10 +44,13 @@ void check(const Tuning& tuning) {
   require("sweep_rows", tuning.sweep_rows, 1, 256);
   require("panel", tuning.panel, 1, 16);
   require("batch_segments", tuning.batch_segments, 0, std::numeric_limits<std::int32_t>::max());
+  require("queues", tuning.queues, 1, 64);
 }
 
 Tuning default_tuning(const DeviceInfo& device) {
-  return {.eigen = device.kind == DeviceKind::gpu ? EigenForm::group : EigenForm::lanes};
+  if (device.kind == DeviceKind::gpu) return {.eigen = EigenForm::group};
+  if (device.kind != DeviceKind::cpu) return {};
+  return {.queues = std::clamp(device.compute_units, 1, most_default_queues)};
 }
 
 bool same_bits(const Tuning& a, const Tuning& b) {
@@ -50,10 +58,11 @@ bool same_bits(const Tuning& a, const Tuning& b) {
 }
 
 std::string to_string(const Tuning& tuning) {
-  return fmt::format("tile {} x {}, sweep {} rows, panel {}, products {}, eigensolver {}, batch {}",
-                     tuning.tile_rows, tuning.tile_vectors, tuning.sweep_rows, tuning.panel,
-                     to_string(tuning.products), to_string(tuning.eigen),
-                     tuning.batch_segments > 0 ? std::to_string(tuning.batch_segments) : "any");
+  return fmt::format(
+      "tile {} x {}, sweep {} rows, panel {}, products {}, eigensolver {}, batch {}, queues {}",
+      tuning.tile_rows, tuning.tile_vectors, tuning.sweep_rows, tuning.panel,
+      to_string(tuning.products), to_string(tuning.eigen),
+      tuning.batch_segments > 0 ? std::to_string(tuning.batch_segments) : "any", tuning.queues);
 }
 
 }  // namespace moclean

@@ -26,10 +26,10 @@ EigenForm parse_eigen_form(const std::string& text);
 
 /// Choices that make the solver faster or slower on a device. The defaults are those of a CPU.
 ///
-/// tile_rows, tile_vectors, sweep_rows, panel and batch_segments leave every bit of A and E as it
-/// is: each entry is summed in the same order whatever their values. Only the reported residual,
-/// a sum over tiles, may change in its last digits. products and eigen round differently; results
-/// agree within the bounds of moclean/denoise/agreement.hpp.
+/// tile_rows, tile_vectors, sweep_rows, panel, batch_segments and queues leave every bit of A and E
+/// as it is: each entry is summed in the same order whatever their values. Only the reported
+/// residual, a sum over tiles, may change in its last digits. products and eigen round differently;
+/// results agree within the bounds of moclean/denoise/agreement.hpp.
 struct Tuning {
   int tile_rows = 8;     ///< of a register tile, 1 .. 16
   int tile_vectors = 3;  ///< across a register tile, 1 .. 8
@@ -44,6 +44,8 @@ struct Tuning {
   /// Most segments of a batch, as far as they fit the memory; 0: as many as suit the device's
   /// memory and, on a CPU, its cache.
   std::int64_t batch_segments = 0;
+  /// Most batches at the same time, each with a command queue and a thread of its own, 1 .. 64.
+  int queues = 1;
 
   bool operator==(const Tuning&) const = default;
 };
@@ -51,13 +53,15 @@ struct Tuning {
 /// Throws ArgumentError naming the first choice out of its range.
 void check(const Tuning& tuning);
 
-/// What is sound on a device before anything was measured: the eigensolver's group form on a GPU.
+/// What is sound on a device before anything was measured: on a GPU the eigensolver's group form
+/// and one queue; on a CPU a queue per compute unit, up to four.
 Tuning default_tuning(const DeviceInfo& device);
 
 /// Whether two tunings give the same bits of A and E: the same products and form of eigensolver.
 bool same_bits(const Tuning& a, const Tuning& b);
 
-/// One line: `tile 8 x 3, sweep 32 rows, panel 4, products own, eigensolver lanes, batch any`.
+/// One line: `tile 8 x 3, sweep 32 rows, panel 4, products own, eigensolver lanes, batch any,
+/// queues 2`.
 std::string to_string(const Tuning& tuning);
 
 }  // namespace moclean

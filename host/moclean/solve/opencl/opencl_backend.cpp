@@ -1,66 +1,20 @@
 #include "moclean/solve/opencl/opencl_backend.hpp"
 
-#include <cmath>
 #include <limits>
-#include <numeric>
+#include <mutex>
 
 #include <fmt/format.h>
 
+#include "moclean/solve/opencl/concurrent.hpp"
 #include "moclean/solve/opencl/robust_pca.hpp"
 
 namespace moclean {
 namespace {
 
-/// Share of a CPU's last-level cache that a batch should fit into. An iteration reads and writes
-/// all of a batch; at 14 to 20 of 32 MiB it takes a tenth less processor time than from main
-/// memory, and with less than that a batch leaves cores and vector lanes without work.
-constexpr double cache_share = 0.5;
-/// Segments below which a batch is not divided for the cache's sake: it would leave vector lanes
-/// and cores without work.
-constexpr Index least_segments = 4;
-
-/// Bytes a batch of these segments should have, so that batches are of equal size and fit the cache
-/// of a CPU; no bound on other devices.
-std::uint64_t comfortable_size(const std::vector<std::uint64_t>& bytes, const DeviceInfo& device) {
-  const double room = cache_share * static_cast<double>(device.global_cache);
-  if (device.kind != DeviceKind::cpu || room <= 0) return std::numeric_limits<std::uint64_t>::max();
-  const auto total = static_cast<double>(std::reduce(bytes.begin(), bytes.end()));
-  return static_cast<std::uint64_t>(std::ceil(total / std::ceil(total / room)));
-}
-
-/// How large a batch may be, and should be.
-struct BatchLimits {
-  std::uint64_t bytes, comfortable;
-  Index segments;
-};
-
-BatchLimits limits_of(const std::vector<std::uint64_t>& bytes, std::uint64_t limit,
-                      const Tuning& tuning, const DeviceInfo& device) {
-  if (tuning.batch_segments > 0) return {limit, limit, tuning.batch_segments};
-  return {limit, comfortable_size(bytes, device), std::numeric_limits<Index>::max()};
-}
-
-/// First segment past a batch that starts with `first` and is within its limits; one stacked matrix
-/// must fit into one allocation, too. bytes[b] is what segment b takes.
-Index batch_end(const SegmentBatch& data, Index first, const std::vector<std::uint64_t>& bytes,
-                const BatchLimits& limits, const DeviceInfo& device) {
-  std::uint64_t taken = 0, stacked = 0;
-  Index last = first;
-  for (; last < data.segments() && last - first < limits.segments; ++last) {
-    const std::uint64_t next = bytes[static_cast<std::size_t>(last)];
-    stacked += static_cast<std::uint64_t>(data.rows(last) * data.pitch()) * sizeof(double);
-    if (taken + next > limits.bytes || stacked > device.max_allocation) break;
-    // Half a segment more than comfortable is better than a remainder of one segment at the end.
-    if (last - first >= least_segments && taken + next / 2 > limits.comfortable) break;
-    taken += next;
-  }
-  if (last == first)
-    throw DeviceError(fmt::format(
-        "a segment of {} frames x {} columns needs {} MiB, more than the {} MiB usable on {}; use "
-        "shorter segments",
-        data.rows(first), data.columns(), bytes[static_cast<std::size_t>(first)] >> 20,
-        limits.bytes >> 20, device.name));
-  return last;
+/// Bytes of the cache that batches in flight should share; no bound on devices other than CPUs.
+std::uint64_t shared_cache(const DeviceInfo& device) {
+  const bool bounds = device.kind == DeviceKind::cpu && device.global_cache > 0;
+  return bounds ? device.global_cache : opencl::BatchBounds::none;
 }
 
 Tuning tuning_of(const Device& device, const OpenClOptions& options) {
@@ -75,20 +29,38 @@ Tuning tuning_of(const Device& device, const OpenClOptions& options) {
 
 }  // namespace
 
-struct OpenClBackend::Solvers {
-  using RobustPca = std::variant<opencl::RobustPcaSolver<double>, opencl::RobustPcaSolver<float>>;
-  static RobustPca robust_pca_of(const Device& device, Precision precision, const Tuning& tuning) {
+/// What solves one batch at a time: a queue of the device, kernels and their scratch memory.
+class OpenClBackend::Worker {
+ public:
+  /// Uses the queue of `device` itself.
+  Worker(const Device& device, Precision precision, const Tuning& tuning)
+      : robust_pca_(solver_of(device, precision, tuning)) {}
+
+  /// Has a queue of its own.
+  Worker(const Device& device, Device::AnotherQueue another, Precision precision,
+         const Tuning& tuning)
+      : device_(std::in_place, device, another),
+        robust_pca_(solver_of(*device_, precision, tuning)) {}
+
+  using RobustPcaSolver =
+      std::variant<opencl::RobustPcaSolver<double>, opencl::RobustPcaSolver<float>>;
+  RobustPcaSolver& robust_pca() { return robust_pca_; }
+
+ private:
+  static RobustPcaSolver solver_of(const Device& device, Precision precision,
+                                   const Tuning& tuning) {
     if (precision == Precision::mixed) return opencl::RobustPcaSolver<float>(device, tuning);
     return opencl::RobustPcaSolver<double>(device, tuning);
   }
 
-  RobustPca robust_pca;
+  std::optional<Device> device_;
+  RobustPcaSolver robust_pca_;
 };
 
 OpenClBackend::OpenClBackend(const Device& device, const OpenClOptions& options)
     : device_(device), options_(options), tuning_(tuning_of(device, options)) {
   if (options_.memory_limit == 0) options_.memory_limit = device.info().usable_memory();
-  solvers_.reset(new Solvers{Solvers::robust_pca_of(device, options.precision, tuning_)});
+  workers_.push_back(std::make_unique<Worker>(device, options.precision, tuning_));
 }
 
 OpenClBackend::~OpenClBackend() = default;
@@ -96,6 +68,48 @@ OpenClBackend::~OpenClBackend() = default;
 std::string OpenClBackend::name() const {
   return fmt::format("opencl ({}, products {}{})", device_.info().name, to_string(tuning_.products),
                      options_.precision == Precision::mixed ? ", mixed precision" : "");
+}
+
+opencl::SegmentSize OpenClBackend::size_of(const SegmentBatch& data, Index b,
+                                           const Method& method) const {
+  const opencl::SegmentSize size{
+      .memory = std::visit(
+          [&](const auto& chosen, const auto& solver) {
+            return solver.memory_of(data.rows(b), data.columns(), chosen);
+          },
+          method, workers_.front()->robust_pca()),
+      .stacked = static_cast<std::uint64_t>(data.rows(b) * data.pitch()) * sizeof(double)};
+  const DeviceInfo& device = device_.info();
+  if (size.memory > options_.memory_limit || size.stacked > device.max_allocation)
+    throw DeviceError(fmt::format(
+        "a segment of {} frames x {} columns needs {} MiB, more than the {} MiB usable on {}; use "
+        "shorter segments",
+        data.rows(b), data.columns(), size.memory >> 20, options_.memory_limit >> 20, device.name));
+  return size;
+}
+
+opencl::BatchPlan OpenClBackend::plan_of(const SegmentBatch& data, const Method& method) const {
+  const DeviceInfo& device = device_.info();
+  const bool lanes = tuning_.eigen == EigenForm::lanes;
+  std::vector<opencl::SegmentSize> sizes;
+  for (Index b = 0; b < data.segments(); ++b) sizes.push_back(size_of(data, b, method));
+  return opencl::plan_batches(sizes, {.memory = options_.memory_limit,
+                                      .allocation = device.max_allocation,
+                                      .cache = shared_cache(device),
+                                      .queues = tuning_.queues,
+                                      .lanes = lanes ? vector_width(device_) : 1,
+                                      .segments = tuning_.batch_segments});
+}
+
+// Workers are made when they are needed first: a small take needs one. Those that are too many keep
+// their scratch memory for larger input, unless there is no room for it.
+void OpenClBackend::prepare_workers(const opencl::BatchPlan& plan) {
+  const auto wanted = static_cast<std::size_t>(plan.queues);
+  const auto permitted = static_cast<std::size_t>(plan.permitted_queues);
+  if (workers_.size() > permitted) workers_.resize(permitted);
+  while (workers_.size() < wanted)
+    workers_.push_back(
+        std::make_unique<Worker>(device_, Device::AnotherQueue{}, options_.precision, tuning_));
 }
 
 void OpenClBackend::require_reachable(const RobustPca& method) const {
@@ -118,23 +132,24 @@ Solution OpenClBackend::solve(const SegmentBatch& data, const Method& method,
                     SegmentBatch(data.columns(), data.first_rows()),
                     std::vector<SegmentOutcome>(static_cast<std::size_t>(data.segments()))};
   Progress progress{.finished = 0, .total = data.segments()};
+  std::mutex reporting;
   const auto finished = [&](Index count) {
+    const std::lock_guard lock(reporting);
     progress.finished += count;
     if (monitor.report) monitor.report(progress);
   };
-  std::visit(
-      [&](const auto& chosen, auto& solver) {
-        std::vector<std::uint64_t> bytes;
-        for (Index b = 0; b < data.segments(); ++b)
-          bytes.push_back(solver.memory_of(data.rows(b), data.columns(), chosen));
-        const BatchLimits limits = limits_of(bytes, options_.memory_limit, tuning_, device_.info());
-        for (Index first = 0; first < data.segments();) {
-          const Index last = batch_end(data, first, bytes, limits, device_.info());
-          solver.solve(data, first, last, chosen, solution, finished, monitor.stop);
-          first = last;
-        }
-      },
-      method, solvers_->robust_pca);
+  const opencl::BatchPlan plan = plan_of(data, method);
+  prepare_workers(plan);
+  const auto solve_batch = [&](int worker, Index batch, const std::stop_token& stop) {
+    const auto first = plan.first[static_cast<std::size_t>(batch)];
+    const auto last = plan.first[static_cast<std::size_t>(batch) + 1];
+    std::visit(
+        [&](const auto& chosen, auto& solver) {
+          solver.solve(data, first, last, chosen, solution, finished, stop);
+        },
+        method, workers_[static_cast<std::size_t>(worker)]->robust_pca());
+  };
+  opencl::for_each_concurrently(plan.queues, plan.batches(), monitor.stop, solve_batch);
   return solution;
 }
 

@@ -3,19 +3,21 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "moclean/device/device.hpp"
 #include "moclean/linalg/precision.hpp"
 #include "moclean/linalg/products.hpp"
 #include "moclean/solve/backend.hpp"
+#include "moclean/solve/opencl/batch_plan.hpp"
 
 namespace moclean {
 
 struct OpenClOptions {
   std::optional<ProductPath> products = {};  ///< overrides that of `tuning`
   Precision precision = Precision::f64;
-  /// Bytes of device memory one batch may take; larger input is solved in several batches. 0: three
-  /// quarters of the device's memory.
+  /// Bytes of device memory the batches in flight may take together; larger input is solved in more
+  /// batches, and in fewer at a time. 0: three quarters of the device's memory.
   std::uint64_t memory_limit = 0;
   std::optional<Tuning> tuning = {};  ///< default_tuning() of the device if empty
 };
@@ -23,8 +25,10 @@ struct OpenClOptions {
 /// Smallest tolerance that float matrices are sure to reach.
 inline constexpr double mixed_tolerance = 1e-6;
 
-/// Solves every segment of a batch at once on an OpenCL device.
-/// Throws DeviceError if the device has no double precision.
+/// Solves the segments of a batch on an OpenCL device, many at once: they are divided into batches
+/// of which up to Tuning::queues run at the same time, each on a thread with a queue of its own.
+/// One thread at a time may call solve; Monitor::report is called from any of these threads. Throws
+/// DeviceError if the device has no double precision.
 class OpenClBackend final : public Backend {
  public:
   /// `device` has to outlive the backend. Compiles the kernels. Throws ArgumentError for a tuning
@@ -44,14 +48,17 @@ class OpenClBackend final : public Backend {
                  const Monitor& monitor = {}) override;
 
  private:
-  struct Solvers;  // compiled kernels of each method
+  class Worker;  // of one of the queues
 
+  opencl::SegmentSize size_of(const SegmentBatch& data, Index b, const Method& method) const;
+  opencl::BatchPlan plan_of(const SegmentBatch& data, const Method& method) const;
+  void prepare_workers(const opencl::BatchPlan& plan);
   void require_reachable(const RobustPca& method) const;
 
   const Device& device_;
   OpenClOptions options_;
   Tuning tuning_;
-  std::unique_ptr<Solvers> solvers_;
+  std::vector<std::unique_ptr<Worker>> workers_;  // the first has the queue of the device
 };
 
 }  // namespace moclean
