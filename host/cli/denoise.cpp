@@ -61,7 +61,9 @@ OpenedBackend open_backend(const DenoiseOptions& options) {
 ProfileReport profile_of(const Device& device, const DenoiseOptions& options,
                          double solve_seconds) {
   auto kernels = device.profile()->kernels();  // before those that measure the peak
+  const double busy_seconds = device.profile()->busy_seconds();
   return {.kernels = std::move(kernels),
+          .busy_seconds = busy_seconds,
           .peak = measure_peak(device),
           .solve_seconds = solve_seconds,
           .precision = options.precision};

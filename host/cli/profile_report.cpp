@@ -38,9 +38,15 @@ double kernel_seconds(const ProfileReport& report) {
   return sum;
 }
 
+// Of the solve time.
+double kernel_share(const KernelProfile& kernel, const ProfileReport& report) {
+  const double sum = kernel_seconds(report);
+  return sum > 0 ? kernel.seconds / sum * share(report.busy_seconds, report) : 0;
+}
+
 std::string line(const KernelProfile& kernel, const ProfileReport& report) {
   std::string text = fmt::format("{:<22}{:>8}{:>12.2f}{:>8.1f}", kernel.kernel, kernel.calls,
-                                 1e3 * kernel.seconds, 100 * share(kernel.seconds, report));
+                                 1e3 * kernel.seconds, 100 * kernel_share(kernel, report));
   if (const auto rates = rates_of(kernel, report))
     text += fmt::format("{:>9.2f}{:>9.2f}{:>8.1f}\n", 1e-9 * rates->flops, 1e-9 * rates->bytes,
                         100 * rates->share_of_peak);
@@ -55,9 +61,11 @@ std::string profile_table(const ProfileReport& report) {
   std::string text = fmt::format("{:<22}{:>8}{:>12}{:>8}{:>9}{:>9}{:>8}\n", "kernel", "calls", "ms",
                                  "% time", "GF/s", "GB/s", "% peak");
   for (const KernelProfile& kernel : report.kernels) text += line(kernel, report);
-  const double rest = report.solve_seconds - kernel_seconds(report);
+  const double rest = report.solve_seconds - report.busy_seconds;
   text += fmt::format("{:<22}{:>8}{:>12.2f}{:>8.1f}\n", "(outside kernels)", "", 1e3 * rest,
                       100 * share(rest, report));
+  text += fmt::format("sum of all kernels: {:.2f} ms in {:.2f} ms\n", 1e3 * kernel_seconds(report),
+                      1e3 * report.busy_seconds);
   const Peak& peak = report.peak;
   text += fmt::format("peak of the device: {:.1f} GF/s double, {:.1f} GF/s float, {:.1f} GB/s\n",
                       1e-9 * peak.double_flops, 1e-9 * peak.float_flops, 1e-9 * peak.bytes);
@@ -67,13 +75,15 @@ std::string profile_table(const ProfileReport& report) {
 Json profile_record(const ProfileReport& report) {
   Json record;
   record["solve_seconds"] = report.solve_seconds;
+  record["kernel_seconds"] = kernel_seconds(report);
+  record["busy_seconds"] = report.busy_seconds;
   record["peak"] = {{"double_flops", report.peak.double_flops},
                     {"float_flops", report.peak.float_flops},
                     {"bytes", report.peak.bytes}};
   record["kernels"] = Json::array();
   for (const KernelProfile& kernel : report.kernels) {
     Json entry{{"kernel", kernel.kernel}, {"calls", kernel.calls}, {"seconds", kernel.seconds}};
-    entry["share_of_time"] = share(kernel.seconds, report);
+    entry["share_of_time"] = kernel_share(kernel, report);
     const auto rates = rates_of(kernel, report);
     entry["flops_per_second"] = rates ? Json(rates->flops) : Json(nullptr);
     entry["bytes_per_second"] = rates ? Json(rates->bytes) : Json(nullptr);

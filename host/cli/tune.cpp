@@ -89,8 +89,9 @@ void add_tune(CLI::App& program, Action& action) {
   command.footer(
       "Ratios are to the choice it competes with, measured in turns; a better one has to save 3 "
       "%.\n"
-      "Tiles, rows of a sweep, panel and batch leave every bit of the results as it is; products\n"
-      "and form of the eigensolver change them within the bounds of moclean denoise --verify.\n"
+      "Tiles, rows of a sweep, panel, queues and batch leave every bit of the results as it is;\n"
+      "products and form of the eigensolver change them within the bounds of moclean denoise\n"
+      "--verify.\n"
       "What is kept is for the device and its driver, in $XDG_CACHE_HOME/moclean or\n"
       "~/.cache/moclean; moclean denoise uses it unless told --no-tuning.\n\n"
       "Example:\n  moclean tune --device cpu");

@@ -52,14 +52,17 @@ int choice(const Json& record, const char* name) {
   return static_cast<int>(value);
 }
 
-Tuning tuning_of(const Json& record) {
+// A file from before there were queues leaves them at their default.
+Tuning tuning_of(const Json& record, const DeviceInfo& device) {
   Tuning tuning{.tile_rows = choice(record, "tile_rows"),
                 .tile_vectors = choice(record, "tile_vectors"),
                 .sweep_rows = choice(record, "sweep_rows"),
                 .panel = choice(record, "panel"),
                 .products = parse_product_path(record.at("products").get<std::string>()),
                 .eigen = parse_eigen_form(record.at("eigen").get<std::string>()),
-                .batch_segments = choice(record, "batch_segments")};
+                .batch_segments = choice(record, "batch_segments"),
+                .queues = record.contains("queues") ? choice(record, "queues")
+                                                    : default_tuning(device).queues};
   check(tuning);
   return tuning;
 }
@@ -73,7 +76,7 @@ Tuning parse(const std::string& text, const DeviceInfo& device) {
     if (record.at(name) != expected)
       throw Error(
           fmt::format("made for {} {}, not {}", name, record.at(name).dump(), expected.dump()));
-  return tuning_of(record.at("tuning"));
+  return tuning_of(record.at("tuning"), device);
 }
 
 }  // namespace
@@ -109,10 +112,10 @@ void write_tuning(const fs::path& file, const DeviceInfo& device, const Tuning& 
 }
 
 Json tuning_record(const Tuning& tuning) {
-  return {{"tile_rows", tuning.tile_rows},          {"tile_vectors", tuning.tile_vectors},
-          {"sweep_rows", tuning.sweep_rows},        {"panel", tuning.panel},
-          {"products", to_string(tuning.products)}, {"eigen", to_string(tuning.eigen)},
-          {"batch_segments", tuning.batch_segments}};
+  return {{"tile_rows", tuning.tile_rows},           {"tile_vectors", tuning.tile_vectors},
+          {"sweep_rows", tuning.sweep_rows},         {"panel", tuning.panel},
+          {"products", to_string(tuning.products)},  {"eigen", to_string(tuning.eigen)},
+          {"batch_segments", tuning.batch_segments}, {"queues", tuning.queues}};
 }
 
 }  // namespace moclean::cli

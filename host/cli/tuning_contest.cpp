@@ -82,7 +82,19 @@ std::vector<Candidate> batches(const Tuning& settled, bool quick) {
   return all;
 }
 
-constexpr Kind kinds[] = {eigen_forms, product_paths, tiles, sweeps, panels, batches};
+std::vector<Candidate> queues(const Tuning& settled, bool quick) {
+  std::vector<Candidate> all;
+  for (const int queues : {1, 2, 3, 4}) {
+    if (queues == settled.queues) continue;
+    Tuning other = settled;
+    other.queues = queues;
+    all.push_back({fmt::format("queues {}", queues), other});
+  }
+  if (quick) all.resize(1);
+  return all;
+}
+
+constexpr Kind kinds[] = {eigen_forms, product_paths, tiles, sweeps, panels, queues, batches};
 
 bool equal_bits(const SegmentBatch& a, const SegmentBatch& b) {
   return std::ranges::equal(a.storage(), b.storage());

@@ -43,9 +43,9 @@ struct ContestReport {
 };
 
 /// Improves on the default tuning of the device, one kind of choice after the other: eigensolver,
-/// products, register tiles, rows of a sweep, panel, batch. The choices of a kind take turns, so
-/// that all suffer alike from what else the machine does; the result of each is compared with that
-/// of the default before its time counts. Throws DeviceError, Cancelled.
+/// products, register tiles, rows of a sweep, panel, queues, batch. The choices of a kind take
+/// turns, so that all suffer alike from what else the machine does; the result of each is compared
+/// with that of the default before its time counts. Throws DeviceError, Cancelled.
 ContestReport find_best_tuning(const Device& device, const SegmentBatch& data,
                                const ContestRules& rules,
                                const std::function<void(const TriedTuning&)>& report,

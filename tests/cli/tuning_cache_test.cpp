@@ -28,7 +28,8 @@ const Tuning tuning{.tile_rows = 6,
                     .panel = 2,
                     .products = ProductPath::clblast,
                     .eigen = EigenForm::group,
-                    .batch_segments = 64};
+                    .batch_segments = 64,
+                    .queues = 3};
 
 class TuningCache : public ::testing::Test {
  protected:
@@ -90,13 +91,24 @@ TEST_F(TuningCache, ChoiceOutOfItsRangeIsAProblem) {
       {"\"sweep_rows\": 48", "\"sweep_rows\": \"\""},
       {"\"group\"", "\"grape\""},
       {"\"clblast\"", "\"blas\""},
-      {": 64", ": 4294967297"}};
+      {": 64", ": 4294967297"},
+      {"\"queues\": 3", "\"queues\": 0"},
+      {"\"queues\": 3", "\"queues\": 65"}};
   for (const auto& [from, to] : changes) {
     const CachedTuning cached = read_changed(from, to);
 
     EXPECT_FALSE(cached.tuning) << to;
     EXPECT_THAT(cached.problem, StartsWith(file_.string())) << to;
   }
+}
+
+TEST_F(TuningCache, FileFromBeforeThereWereQueuesTakesTheirDefault) {
+  const CachedTuning cached = read_changed(",\n  \"queues\": 3", "");
+
+  ASSERT_TRUE(cached.tuning) << cached.problem;
+  Tuning expected = tuning;
+  expected.queues = default_tuning(device).queues;
+  EXPECT_EQ(cached.tuning, expected);
 }
 
 TEST_F(TuningCache, LiesInTheCacheDirectoryOfTheUser) {
