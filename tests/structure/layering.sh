@@ -41,6 +41,7 @@ may_catch=(
   'moclean/device/kernel.cpp: turns a failed build into a DeviceError that holds the log'
   'moclean/device/device.cpp: an ICD without platforms or devices throws; that is an empty list'
   'moclean/solve/reference/reference_backend.cpp: carries an exception from a thread to the caller'
+  'moclean/solve/opencl/concurrent.cpp: carries the first exception of its threads to the caller'
 )
 
 max_lines=400
