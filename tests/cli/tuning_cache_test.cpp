@@ -103,7 +103,7 @@ TEST_F(TuningCache, ChoiceOutOfItsRangeIsAProblem) {
 }
 
 TEST_F(TuningCache, FileFromBeforeThereWereQueuesTakesTheirDefault) {
-  const CachedTuning cached = read_changed(",\n  \"queues\": 3", "");
+  const CachedTuning cached = read_changed(",\n    \"queues\": 3", "");
 
   ASSERT_TRUE(cached.tuning) << cached.problem;
   Tuning expected = tuning;
