@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "moclean/report/report.hpp"
 #include "moclean/solve/opencl/opencl_backend.hpp"
 #include "moclean/solve/reference/reference_backend.hpp"
 
@@ -15,6 +16,7 @@
 #include "cli/outputs.hpp"
 #include "cli/pipeline.hpp"
 #include "cli/process_memory.hpp"
+#include "cli/truth.hpp"
 #include "cli/tuning_cache.hpp"
 
 namespace moclean::cli {
@@ -85,6 +87,9 @@ void print_summary(const TakeReport& take, const fs::path& result) {
       range(take.segments, [](const DenoisedSegment& s) { return s.outcome.iterations; }),
       range(take.segments, [](const DenoisedSegment& s) { return s.outcome.rank; }),
       take.solve_seconds, take.frames_per_second());
+  if (take.truth)
+    fmt::print("{}: FD from the truth {:.4g} -> {:.4g}\n", take.file.string(), take.truth->fd_noisy,
+               take.truth->fd_clean);
   if (take.verification) fmt::print("{}\n", agreement_line(take));
 }
 
@@ -112,12 +117,19 @@ ExitCode run(DenoiseOptions options) {
   if (options.memory_limit != 0) return_freed_memory();  // whoever sets a limit means it
   complete(options);
   const Interrupt interrupt;  // before the threads of the OpenCL driver
-  Job job{.options = options, .files = expand_folders(options.inputs), .plan = {}};
-  job.plan =
-      plan_outputs({options.inputs, job.files, options.output, options.outliers, options.format});
+  if (!options.report.empty()) require_report();
+  Job job{.options = options, .files = expand_folders(options.inputs)};
+  job.plan = plan_outputs({.inputs = options.inputs,
+                           .files = job.files,
+                           .output = options.output,
+                           .outliers = options.outliers,
+                           .report = options.report,
+                           .format = options.format});
+  if (!options.truth.empty()) job.truths = truths_of(options.truth, job.files);
   if (!options.json.empty() && options.json != "-") require_writable(options.json);
 
   OpenedBackend opened = open_backend(options);
+  job.backend = opened.report.name;
   job.compute_units = opened.device ? opened.device->info().compute_units : options.jobs;
   const RunReport report = run_pipeline(job, *opened.backend, interrupt.token());
 

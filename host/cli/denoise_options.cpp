@@ -169,6 +169,29 @@ void add_resources(CLI::App& command, DenoiseOptions& options) {
       ->group(device_group);
 }
 
+void add_truth(CLI::App& command, DenoiseOptions& options) {
+  command
+      .add_option("--report", options.report,
+                  "Write an HTML page to look at: player, curves, heat map, figures; a folder when "
+                  "OUTPUT is one")
+      ->type_name("FILE.html")
+      ->group(report_group);
+  auto* truth = command
+                    .add_option("--truth", options.truth,
+                                "Recording without noise to compare with; for several inputs a "
+                                "folder of files named like them. Its skeleton serves the report")
+                    ->type_name("FILE")
+                    ->group(report_group);
+  command
+      .add_option_function<std::string>(
+          "--truth-frames",
+          [&](const std::string& text) { options.truth_frames = parse_frame_range(text); },
+          "Frames of the truth; default: --frames, of inputs and truth alike")
+      ->needs(truth)
+      ->type_name("A:B")
+      ->group(report_group);
+}
+
 void add_report(CLI::App& command, DenoiseOptions& options) {
   command.add_option("--json", options.json, "Write a record of the run; - is standard output")
       ->type_name("FILE")
@@ -215,6 +238,7 @@ void add_denoise_options(CLI::App& command, DenoiseOptions& options) {
   add_device(command, options);
   add_arithmetic(command, options);
   add_resources(command, options);
+  add_truth(command, options);
   add_report(command, options);
 }
 

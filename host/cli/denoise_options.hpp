@@ -40,6 +40,10 @@ struct DenoiseOptions {
   std::uint64_t memory_limit = 0;  ///< bytes; set by complete() where it is not given
   bool overlap = true;             ///< of reading, solving and writing
 
+  std::filesystem::path report;  ///< HTML; empty: none
+  std::filesystem::path truth;   ///< file, or folder of files named like the inputs; empty: none
+  std::optional<FrameRange> truth_frames;  ///< default: those of the inputs
+
   std::filesystem::path json;  ///< "-": standard output; empty: none
   bool verify = false;
   bool profile = false;

@@ -68,6 +68,10 @@ Json take_record(const TakeReport& take) {
   record["segments"] = Json::array();
   for (const DenoisedSegment& segment : take.segments)
     record["segments"].push_back(segment_record(segment));
+  if (take.truth)
+    record["truth"] = {{"file", take.truth->file.string()},
+                       {"fd_noisy", take.truth->fd_noisy},
+                       {"fd_clean", take.truth->fd_clean}};
   if (take.verification) record["agreement"] = agreement_record(*take.verification);
   return record;
 }

@@ -55,6 +55,18 @@ std::string extension_of_result(const fs::path& input, const std::string& format
   return can_be_written(input) ? extension(input) : ".npy";
 }
 
+std::vector<fs::path> reports_in(const fs::path& folder, const std::vector<fs::path>& results) {
+  std::vector<fs::path> reports;
+  for (const fs::path& result : results) reports.push_back(folder / (result.stem() += ".html"));
+  return reports;
+}
+
+void require_writable_report(const fs::path& file) {
+  if (extension(file) != ".html")
+    throw ArgumentError(fmt::format("{}: a report is a file ending in .html", file.string()));
+  require_writable(file);
+}
+
 std::vector<fs::path> files_in(const fs::path& folder, const OutputRequest& request) {
   std::map<fs::path, fs::path> inputs;
   std::vector<fs::path> results;
@@ -99,12 +111,20 @@ OutputPlan plan_outputs(const OutputRequest& request) {
       plan.outliers = files_in(request.outliers, request);
       plan.folders.push_back(request.outliers);
     }
+    if (!request.report.empty()) {
+      plan.reports = reports_in(request.report, plan.clean);
+      plan.folders.push_back(request.report);
+    }
     for (const fs::path& folder : plan.folders) require_creatable_folder(folder);
   } else {
     plan.clean = {request.output};
     if (!request.outliers.empty()) plan.outliers = {request.outliers};
     for (const auto& files : {plan.clean, plan.outliers})
       for (const fs::path& file : files) require_format(file, request.format);
+    if (!request.report.empty()) {
+      plan.reports = {request.report};
+      require_writable_report(request.report);
+    }
   }
   for (std::size_t i = 0; i < plan.outliers.size(); ++i)
     if (fs::weakly_canonical(plan.clean[i]) == fs::weakly_canonical(plan.outliers[i]))

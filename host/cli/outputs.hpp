@@ -10,6 +10,7 @@ namespace moclean::cli {
 struct OutputPlan {
   std::vector<std::filesystem::path> clean;     ///< one per input
   std::vector<std::filesystem::path> outliers;  ///< one per input; empty if not asked for
+  std::vector<std::filesystem::path> reports;   ///< one per input; empty if not asked for
   std::vector<std::filesystem::path> folders;   ///< to be created before anything is written
 };
 
@@ -19,6 +20,7 @@ struct OutputRequest {
   std::vector<std::filesystem::path> files;   ///< inputs with the folders expanded
   std::filesystem::path output;               ///< file or folder
   std::filesystem::path outliers;             ///< file or folder like `output`; may be empty
+  std::filesystem::path report;               ///< as `outliers`
   std::string format;                         ///< "csv", "npy", or empty: as the extension says
 };
 
@@ -26,7 +28,8 @@ struct OutputRequest {
 ///
 /// `output` is a folder if there are several inputs or one that is a folder, if it ends with a
 /// slash, or if it is a folder already. A file in it is named after its input; its format is
-/// `format`, else the input's if that is .csv or .npy, else .npy. Throws ArgumentError for an
+/// `format`, else the input's if that is .csv or .npy, else .npy; a report in its folder is .html.
+/// Throws ArgumentError for an
 /// extension that cannot be written and for two results of the same name, FileError for a place
 /// that cannot be written.
 OutputPlan plan_outputs(const OutputRequest& request);

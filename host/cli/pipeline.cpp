@@ -2,30 +2,37 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <optional>
 
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/metric/metric.hpp"
 #include "moclean/solve/reference/reference_backend.hpp"
 
+#include "cli/denoise_report.hpp"
 #include "cli/process_memory.hpp"
 #include "cli/progress_line.hpp"
 #include "cli/result_writer.hpp"
 #include "cli/take_reader.hpp"
+#include "cli/truth.hpp"
 
 namespace moclean::cli {
 namespace {
 
 // Copies of a take's samples, at most: read 1, stacked 1, solved 2, unstacked 2 and their padding;
-// with --verify two more while the reference works. Written they are 2.
-constexpr std::uint64_t copies_solving = 7, copies_verifying = 9, copies_writing = 2;
+// with --verify two more while the reference works, and one of a truth. Written they are 2; a
+// report has the noisy take and the truth besides, and the text of the page four times.
+constexpr std::uint64_t copies_solving = 7, copies_verifying = 9, copies_of_truth = 1,
+                        copies_writing = 2, copies_reporting = 8;
 
 GroupRules rules_of(const Job& job) {
   constexpr Index segments_per_unit = 32;
   GroupRules rules{.segmentation = job.options.segmentation};
   rules.full_segments = std::max(rules.least_segments, segments_per_unit * job.compute_units);
   rules.copies = job.options.verify ? copies_verifying : copies_solving;
+  if (!job.truths.empty() || !job.options.report.empty()) rules.copies += copies_of_truth;
   return rules;
 }
 
@@ -121,6 +128,7 @@ class Run {
 
   std::vector<Denoised> solved(const TakeGroup& group) {
     const Index expected = reader_.expected_segments();
+    read_truths(group);  // before the work: one of another shape ends the run
     auto results = solved_by_device(group, expected);
     for (std::size_t i = 0; i < results.size(); ++i)
       report_.takes.push_back({.file = job_.files[group.first + i],
@@ -130,10 +138,42 @@ class Run {
                                .solve_seconds = results[i].solve_seconds,
                                .write_seconds = 0,
                                .segments = results[i].segments,
-                               .verification = {}});
+                               .verification = {},
+                               .truth = compared(group, i, results[i].clip)});
     if (verifier_) verify(group, results, verifier_->solve(group, expected, reader_.at_end()));
     ++report_.groups;
     return results;
+  }
+
+  void read_truths(const TakeGroup& group) {
+    if (job_.truths.empty()) return;
+    for (std::size_t i = 0; i < group.clips.size(); ++i)
+      truths_[group.first + i] =
+          read_truth(job_.truths[group.first + i], job_.options, group.clips[i]);
+  }
+
+  std::optional<TruthReport> compared(const TakeGroup& group, std::size_t i, const Clip& clean) {
+    const std::size_t take = group.first + i;
+    if (job_.truths.empty()) return std::nullopt;
+    const Matrix& truth = truths_.at(take).samples;
+    TruthReport found{.file = job_.truths[take],
+                      .fd_noisy = frobenius_distance(truth, group.clips[i].samples),
+                      .fd_clean = frobenius_distance(truth, clean.samples)};
+    if (job_.options.report.empty()) truths_.erase(take);
+    return found;
+  }
+
+  // The clean take and the outliers come to it when they are written.
+  std::optional<Report> report_of(TakeGroup& group, std::size_t i) {
+    if (job_.options.report.empty()) return std::nullopt;
+    const std::size_t take = group.first + i;
+    ReportTake parts{.noisy = std::move(group.clips[i]), .segments = report_.takes[take].segments};
+    if (!job_.truths.empty()) {
+      parts.truth = std::move(truths_.at(take));
+      truths_.erase(take);
+    }
+    parts.parents = parents_of(job_, take, parts.noisy);
+    return denoise_report(job_, report_.takes[take], std::move(parts));
   }
 
   // A take that needs more than the device's share of the memory is alone in its group.
@@ -164,11 +204,14 @@ class Run {
 
   void put(TakeGroup& group, std::vector<Denoised> results) {
     for (std::size_t i = 0; i < results.size(); ++i) {
+      std::optional<Report> report = report_of(group, i);
       group.clips[i] = {};
-      group.memory[i].resize(group.memory[i].bytes() / rules_of(job_).copies * copies_writing);
+      group.memory[i].resize(group.memory[i].bytes() / rules_of(job_).copies *
+                             (report ? copies_reporting : copies_writing));
       writer_.put({.index = group.first + i,
                    .clip = std::move(results[i].clip),
                    .outliers = std::move(results[i].outliers),
+                   .report = std::move(report),
                    .memory = std::move(group.memory[i])});
     }
   }
@@ -178,6 +221,7 @@ class Run {
   BusyClock clock_;
   const BusyClock::Work all_{clock_};  // reading begins when the reader is made
   RunReport report_;
+  std::map<std::size_t, Clip> truths_;  // by take, from before it is solved until it is written
   MemoryBudget budget_;
   ResultWriter writer_;
   TakeReader reader_;

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <stop_token>
+#include <string>
 #include <vector>
 
 #include "moclean/solve/backend.hpp"
@@ -17,7 +18,9 @@ namespace moclean::cli {
 struct Job {
   const DenoiseOptions& options;
   std::vector<std::filesystem::path> files;
-  OutputPlan plan;
+  OutputPlan plan = {};
+  std::vector<std::filesystem::path> truths = {};  ///< one per file; empty: none
+  std::string backend = {};                        ///< its name, for reports
   int compute_units = 1;  ///< of the backend: how many segments it wants at once depends on it
 };
 

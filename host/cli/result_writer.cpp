@@ -69,7 +69,7 @@ void ResultWriter::commit() {
 
 // After a failure the takes that wait are dropped all the same: others wait for their memory.
 void ResultWriter::work() {
-  while (const auto take = queue_.pop()) {
+  while (auto take = queue_.pop()) {
     try {
       {
         const std::lock_guard lock(mutex_);
@@ -83,12 +83,19 @@ void ResultWriter::work() {
   }
 }
 
-void ResultWriter::write(const SolvedTake& take) {
+void ResultWriter::write(SolvedTake& take) {
   const BusyClock::Work work(clock_);
   std::vector<AtomicFile> files;
   files.push_back(write_temporary(plan_.clean[take.index], take.clip));
   if (!plan_.outliers.empty())
     files.push_back(write_temporary(plan_.outliers[take.index], take.outliers));
+  if (take.report) {
+    take.report->take->clean = std::move(take.clip);
+    take.report->take->outliers = std::move(take.outliers);
+    AtomicFile& file = files.emplace_back(plan_.reports[take.index]);
+    file.write(html(*take.report));
+    file.close();
+  }
   take_seconds_[take.index] = work.seconds();
   const std::lock_guard lock(mutex_);
   for (AtomicFile& file : files) written_.push_back(std::move(file));

@@ -3,11 +3,13 @@
 #include <exception>
 #include <filesystem>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
 #include "moclean/denoise/denoiser.hpp"
 #include "moclean/io/file.hpp"
+#include "moclean/report/report.hpp"
 
 #include "cli/busy_clock.hpp"
 #include "cli/memory_budget.hpp"
@@ -21,6 +23,7 @@ struct SolvedTake {
   std::size_t index = 0;  ///< of its file
   Clip clip;
   Clip outliers;
+  std::optional<Report> report;  ///< to be written, too; clean and outliers are added to it
   MemoryShare memory;
 };
 
@@ -66,7 +69,7 @@ class ResultWriter {
 
  private:
   void work();
-  void write(const SolvedTake& take);
+  void write(SolvedTake& take);
   void rethrow_failure();
 
   const OutputPlan& plan_;

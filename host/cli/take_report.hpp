@@ -18,6 +18,13 @@ struct Verification {
   double largest_difference = 0;  ///< of any entry of the motion, in the unit of the clip
 };
 
+/// How far a take was from the truth, and is: FD, Peng et al., equation (8).
+struct TruthReport {
+  std::filesystem::path file;
+  double fd_noisy = 0;
+  double fd_clean = 0;
+};
+
 /// One take of a run of `moclean denoise`.
 struct TakeReport {
   std::filesystem::path file;
@@ -28,6 +35,7 @@ struct TakeReport {
   double write_seconds = 0;
   std::vector<DenoisedSegment> segments;  ///< first_frame counts from the first frame used
   std::optional<Verification> verification;
+  std::optional<TruthReport> truth;
 
   /// Frames per second of solving; 0 if it took no measurable time.
   double frames_per_second() const;

@@ -177,4 +177,15 @@ Clip joint_positions(const SkeletonMotion& motion) {
   return clip;
 }
 
+std::vector<int> joint_parents(const Skeleton& skeleton, const Clip& clip) {
+  const bool are_same =
+      std::ranges::equal(joints(clip), skeleton.bones, [](const Joint& joint, const Bone& bone) {
+        return joint.columns == 3 && joint.name == bone.name;
+      });
+  std::vector<int> parents;
+  if (!are_same) return parents;
+  for (const Bone& bone : skeleton.bones) parents.push_back(bone.parent);
+  return parents;
+}
+
 }  // namespace moclean

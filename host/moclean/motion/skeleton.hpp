@@ -61,4 +61,8 @@ Matrix forward_kinematics(const Skeleton& skeleton, const Matrix& motion);
 /// The joint positions of a motion as a clip, columns named after the bones.
 Clip joint_positions(const SkeletonMotion& motion);
 
+/// Per joint of joints(clip) the joint it hangs on, -1 for a root. Empty unless the joints are the
+/// skeleton's bones: as many, three columns each, under the same names in the same order.
+std::vector<int> joint_parents(const Skeleton& skeleton, const Clip& clip);
+
 }  // namespace moclean
