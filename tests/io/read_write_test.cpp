@@ -5,6 +5,7 @@
 #include "moclean/core/error.hpp"
 #include "moclean/io/file.hpp"
 #include "moclean/io/find_skeleton.hpp"
+#include "moclean/io/read_skeleton.hpp"
 
 #include "io/temporary_folder.hpp"
 #include "io/tiny_files.hpp"
@@ -54,6 +55,17 @@ TEST(ReadClip, BlamesTheFileThatIsWrong) {
 
   EXPECT_THAT([&] { read_clip(folder.file("tiny.amc", test::tiny_amc)); },
               ThrowsMessage<FileError>(HasSubstr("tiny.asf:5: expected a number, found 'x'")));
+}
+
+TEST(ReadSkeleton, IsOfTheFileOrOfTheOption) {
+  const TemporaryFolder folder;
+  const fs::path csv = folder.file("a.csv", test::tiny_csv);
+  const fs::path asf = folder.file("tiny.asf", test::tiny_asf);
+
+  EXPECT_EQ(read_skeleton(folder.file("a.bvh", test::tiny_bvh))->bones[2].name, "foot");
+  EXPECT_EQ(read_skeleton(folder.file("tiny.amc", test::tiny_amc))->bones[1].name, "thigh");
+  EXPECT_EQ(read_skeleton(csv, {.skeleton = asf})->bones[1].name, "thigh");
+  EXPECT_FALSE(read_skeleton(csv));
 }
 
 TEST(WriteClip, ChoosesTheFormatByExtension) {

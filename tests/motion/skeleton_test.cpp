@@ -145,6 +145,21 @@ TEST(ForwardKinematics, RejectsAParentThatComesLater) {
   EXPECT_THROW(forward_kinematics(skeleton, Matrix(1, 0)), ShapeError);
 }
 
+TEST(JointParents, AreTheBonesOfTheSameNames) {
+  Skeleton skeleton;
+  skeleton.bones = {{.name = "hip"}, {.name = "knee", .parent = 0}, {.name = "head", .parent = 0}};
+  Clip clip;
+  for (const char* column : {"hip.x", "hip.y", "hip.z", "knee.x", "knee.y", "knee.z"})
+    clip.columns.emplace_back(column);
+  EXPECT_THAT(joint_parents(skeleton, clip), testing::IsEmpty());  // no head
+
+  for (const char* column : {"head.x", "head.y", "head.z"}) clip.columns.emplace_back(column);
+  EXPECT_THAT(joint_parents(skeleton, clip), testing::ElementsAre(-1, 0, 0));
+
+  skeleton.bones[2].name = "neck";
+  EXPECT_THAT(joint_parents(skeleton, clip), testing::IsEmpty());
+}
+
 TEST(JointPositions, NamesThreeColumnsPerBone) {
   SkeletonMotion motion;
   motion.skeleton.bones = {{.name = "hip", .channels = {translate_y}}};

@@ -8,13 +8,14 @@
   // Moves the frame while playing; begins again at the end.
   function run(take, state) {
     const rate = take.rate || assumedRate;
-    let last = 0;
-    let at = 0;  // frame with its fraction
+    let last = null;  // time of the last step
+    let at = 0;       // frame with its fraction
     const step = (now) => {
       const { playing, speed, frame, frames } = state.values;
       if (!playing) return;
       if (Math.floor(at) !== frame) at = frame;  // somebody else has moved it
-      at = (at + Math.min(0.25, (now - last) / 1000) * rate * speed) % frames;
+      const seconds = last === null ? 0 : Math.min(0.25, (now - last) / 1000);
+      at = (at + seconds * rate * speed) % frames;
       last = now;
       state.set({ frame: Math.floor(at) });
       requestAnimationFrame(step);
@@ -22,7 +23,7 @@
     state.listen((values, changed) => {
       if (!changed.playing || !values.playing) return;
       at = values.frame;
-      last = performance.now();
+      last = null;
       requestAnimationFrame(step);
     });
   }

@@ -1,0 +1,100 @@
+// Uses a report as a person would and returns what it saw. Evaluated in the page by browser_test.cpp.
+(async () => {
+  const byId = (id) => document.getElementById(id);
+  const wait = (milliseconds) => new Promise((resolve) => setTimeout(resolve, milliseconds));
+  const drawn = () => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve)));
+  const frame = () => Number(/frame (\d+)/.exec(byId("position").textContent)[1]);
+  const choose = (id, value) => {
+    byId(id).value = value;
+    byId(id).dispatchEvent(new Event(byId(id).tagName === "SELECT" ? "change" : "input"));
+  };
+  const press = (element, key) => element.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true }));
+  const result = {};
+
+  // The picture of the bodies, taken in the turn in which it is drawn.
+  const picture = async (frameNumber) => {
+    choose("scrub", String(frameNumber));
+    return new Promise((resolve) => requestAnimationFrame(() => resolve(byId("stage").firstChild.toDataURL())));
+  };
+
+  // Pixels of about this colour in a picture.
+  const pixelsOf = (name, { data }) => {
+    const style = getComputedStyle(document.documentElement).getPropertyValue(`--${name}`);
+    const wanted = style.match(/[0-9a-f]{2}/gi).map((digits) => parseInt(digits, 16));
+    let found = 0;
+    for (let i = 0; i < data.length; i += 4)
+      if (data[i + 3] > 200 && wanted.every((value, k) => Math.abs(value - data[i + k]) < 12)) ++found;
+    return found;
+  };
+
+  const pickedByClicks = () => {
+    const stage = byId("stage");
+    const box = stage.getBoundingClientRect();
+    const joints = new Set();
+    for (let y = 10; y < box.height; y += 14)
+      for (let x = 10; x < box.width; x += 14) {
+        const place = { clientX: box.left + x, clientY: box.top + y, bubbles: true };
+        stage.dispatchEvent(new PointerEvent("pointerdown", place));
+        stage.dispatchEvent(new PointerEvent("pointerup", place));
+        joints.add(byId("joint").value);
+      }
+    return joints.size;
+  };
+
+  await wait(500);
+  result.heading = byId("title").textContent;
+  result.bold = document.querySelectorAll("b").length;
+  result.verdict = byId("verdict").textContent;
+  result.drawing = byId("stage").dataset.drawing;
+  result.labels = [...document.querySelectorAll("#stage .label")].map((label) => label.textContent.trim());
+  result.overflow = document.documentElement.scrollWidth - window.innerWidth;
+
+  choose("scrub", "5");
+  await drawn();
+  result.sought = frame();
+  byId("play").click();
+  await wait(700);
+  result.playing = byId("play").textContent;
+  result.played = frame();
+  result.drawnFrame = Number(byId("stage").dataset.drawn);
+  byId("play").click();
+  await wait(100);
+  result.stopped = frame();
+  await wait(300);
+  result.stayed = frame();
+  const before = await picture(10);
+  result.pictureMoves = before !== await picture(50);
+  result.pictureReturns = before === await picture(10);
+
+  choose("joint", "7");
+  await drawn();
+  result.curveOf = byId("charts").dataset.joint;
+  result.charts = byId("charts").querySelectorAll(".chart").length;
+  const canvas = byId("charts").querySelector("canvas");
+  const chart = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+  result.cleanPixels = pixelsOf("clean", chart);
+  result.markPixels = pixelsOf("mark", chart);
+  result.pickedByClicks = pickedByClicks();
+
+  const map = byId("heat-map").getBoundingClientRect();
+  byId("heat-map").dispatchEvent(new MouseEvent("click", {
+    clientX: map.right - 1, clientY: map.top + 4.5 * 14, bubbles: true }));
+  result.heatFrame = frame();
+  result.heatJoint = byId("joint").value;
+  choose("scrub", "25");
+  result.gap = byId("heat-value").textContent;
+  press(byId("heat-map"), "ArrowDown");
+  press(byId("heat-map"), "ArrowRight");
+  result.keyed = [frame(), Number(byId("joint").value)];
+  document.querySelector("#worst-frames button").click();
+  result.worst = frame();
+
+  const heads = [...document.querySelectorAll("#tables th button")];
+  const first = () => document.querySelector("#tables td").textContent;
+  heads[1].click();
+  result.least = first();
+  heads[1].click();
+  result.most = first();
+  result.badSegments = document.querySelectorAll("#segments tr.bad").length;
+  return result;
+})()
