@@ -88,6 +88,18 @@ TEST(ReportFigures, KeepWorstFramesApart) {
   EXPECT_EQ(found.worst_frames[2].frame, 10);
 }
 
+TEST(ReportFigures, CountAFrameThatCleaningSpoilt) {
+  ReportTake take = one_error(60);
+  take.clean.samples(30, 4) = 7;
+  take.outliers.samples(30, 4) = -7;
+
+  const ReportFigures found = figures(take);
+
+  ASSERT_EQ(found.worst_frames.size(), 2);
+  EXPECT_EQ(found.worst_frames[0].frame, 30);
+  EXPECT_EQ(found.worst_frames[0].joint, 1);
+}
+
 TEST(ReportFigures, LeaveGapsOut) {
   ReportTake take = one_error();
   for (Clip* clip : {&take.noisy, &take.clean, &take.outliers}) {

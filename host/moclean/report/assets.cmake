@@ -20,8 +20,8 @@ endforeach()
 function(moclean_embed_asset name)
   set(generated ${CMAKE_CURRENT_BINARY_DIR}/report/${name}.cpp)
   set(embed ${CMAKE_CURRENT_SOURCE_DIR}/report/embed.cmake)
-  set(files ${ARGN})
-  list(FILTER files EXCLUDE REGEX NOTFOUND)
+  set(files "${ARGN}")
+  list(FILTER files EXCLUDE REGEX "^$|NOTFOUND")
   add_custom_command(
     OUTPUT ${generated}
     COMMAND ${CMAKE_COMMAND} -D NAME=${name} "-D FILES=${files}" -D OUTPUT=${generated} -P ${embed}

@@ -107,15 +107,18 @@ void per_joint(const ReportTake& take, ReportFigures& result) {
   }
 }
 
-// Worst first, and no two within a quarter of a second of each other.
+// Worst first, and no two within a quarter of a second of each other. Cleaning can spoil a frame
+// that was good, so that the larger error, before or after, counts; without truth, the correction.
 std::vector<ReportFigures::WorstFrame> worst_frames(const ReportTake& take, const Matrix& series) {
-  const Index kind = take.truth ? 1 : 0;  // the noisy take's error, else the correction
+  const auto badness = [&](Index f) {
+    return take.truth ? std::max(series(f, 1), series(f, 2)) : series(f, 0);
+  };
   const Matrix corrections = joint_corrections(take.outliers);
   const Index apart = std::max<Index>(10, static_cast<Index>(take.noisy.frame_rate / 4));
   std::vector<Index> order(static_cast<std::size_t>(series.rows()));
   std::iota(order.begin(), order.end(), Index{0});
-  std::erase_if(order, [&](Index f) { return !(series(f, kind) > 0); });
-  std::ranges::stable_sort(order, std::ranges::greater{}, [&](Index f) { return series(f, kind); });
+  std::erase_if(order, [&](Index f) { return !(badness(f) > 0); });
+  std::ranges::stable_sort(order, std::ranges::greater{}, badness);
 
   std::vector<ReportFigures::WorstFrame> found;
   for (const Index f : order) {

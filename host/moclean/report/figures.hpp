@@ -23,7 +23,7 @@ struct ReportFigures {
     std::optional<BeforeAfter> error;  ///< root mean square difference from the truth
   };
 
-  /// A frame that is worse than those around it.
+  /// A frame that is worse than those around it, before cleaning or after.
   struct WorstFrame {
     Index frame = 0;
     Index joint = 0;        ///< the worst joint of the frame, index into `joints`

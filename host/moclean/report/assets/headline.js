@@ -57,9 +57,10 @@
     const all = take.figures.joints.map((joint, index) => ({
       index, before: joint.error ? joint.error[0] : joint.correction, after: joint.error ? joint.error[1] : null,
     }));
-    all.sort((a, b) => b.before - a.before);
+    const badness = (joint) => Math.max(joint.before, joint.after);  // cleaning can spoil a good one
+    all.sort((a, b) => badness(b) - badness(a));
     for (const joint of all.slice(0, 5))
-      line(byId("worst-joints"), take.joints[joint.index].name, joint.before, joint.after, all[0].before,
+      line(byId("worst-joints"), take.joints[joint.index].name, joint.before, joint.after, badness(all[0]),
            () => state.set({ joint: joint.index }));
     return all[0].index;
   }
@@ -69,7 +70,7 @@
     const of = (frame) => hasTruth ? [take.perFrame.value(frame, 1), take.perFrame.value(frame, 2)]
                                    : [take.perFrame.value(frame, 0), null];
     const worst = take.figures.worstFrames;
-    const largest = worst.length > 0 ? of(worst[0].frame)[0] : 0;
+    const largest = worst.length > 0 ? Math.max(...of(worst[0].frame)) : 0;
     for (const { frame, joint } of worst)
       line(byId("worst-frames"), `${frame}, ${take.joints[joint].name}`, ...of(frame), largest,
            () => state.seek(frame, { joint }));
@@ -94,7 +95,8 @@
   // Returns the joint to begin with: the worst.
   report.showHeadline = (take, state) => {
     const verdict = byId("verdict");
-    verdict.textContent = take.verdict;
+    const [first, ...rest] = take.verdict.split(". ");  // what follows the first sentence is a remark
+    verdict.append(rest.length > 0 ? `${first}.` : first, element("small", {}, rest.join(". ")));
     if (take.figures.fd)
       verdict.className = take.figures.fd[1] < take.figures.fd[0] ? "better" : "worse";
     const hasTruth = take.figures.fd !== null;
