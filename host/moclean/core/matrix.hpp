@@ -10,6 +10,9 @@ using Index = Eigen::Index;
 /// Dense row-major matrix of doubles: [frames x columns], a frame is contiguous.
 using Matrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
+/// One claim per entry of a Matrix.
+using Mask = Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
 /// Views of a block of rows inside a wider, padded row-major matrix.
 using MatrixView = Eigen::Map<Matrix, 0, Eigen::OuterStride<>>;
 using ConstMatrixView = Eigen::Map<const Matrix, 0, Eigen::OuterStride<>>;

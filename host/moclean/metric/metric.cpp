@@ -2,9 +2,8 @@
 
 #include <cmath>
 
-#include <fmt/format.h>
-
 #include "moclean/core/error.hpp"
+#include "moclean/metric/same_shape.hpp"
 
 namespace moclean {
 namespace {
@@ -40,10 +39,7 @@ Differences differences(const ConstMatrixRef& truth, const ConstMatrixRef& estim
 }
 
 Differences checked_differences(const ConstMatrixRef& truth, const ConstMatrixRef& estimate) {
-  if (truth.rows() != estimate.rows() || truth.cols() != estimate.cols())
-    throw ShapeError(fmt::format(
-        "cannot compare {} frames x {} columns with {} frames x {} columns: the shapes differ",
-        truth.rows(), truth.cols(), estimate.rows(), estimate.cols()));
+  require_same_shape(truth, estimate);
   const Differences result = differences(truth, estimate);
   if (result.compared == 0)
     throw ShapeError("nothing to compare: no entry is observed in both clips");
