@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "moclean/core/error.hpp"
 #include "moclean/io/read_write.hpp"
 #include "moclean/metric/metric.hpp"
 #include "moclean/noise/noise.hpp"
@@ -18,20 +19,35 @@ namespace {
 struct CorruptOptions {
   std::filesystem::path input;
   std::filesystem::path output;
+  std::filesystem::path mask;  // empty: not asked for
   std::string noise;
   std::uint64_t seed = 0;
   InputOptions reading;
 };
 
+// 1 where the noise touched an entry, else 0, in the shape of the clip.
+Clip mask_of(const Corrupted& noisy) {
+  Clip mask = noisy.clip;
+  mask.samples = noisy.touched.cast<double>();
+  return mask;
+}
+
 ExitCode run(const CorruptOptions& options) {
   const Noise noise = parse_noise(options.noise);
   require_writable_clip(options.output);
+  if (!options.mask.empty()) require_writable_clip(options.mask);
+  if (options.mask == options.output)
+    throw ArgumentError(fmt::format("-o and --mask would both write {}", options.output.string()));
   const Clip clean = read_input(options.input, options.reading);
   const Corrupted noisy = corrupt(clean, noise, options.seed);
-  write_clip(options.output, noisy.clip);
-  fmt::print("{} -> {}: {} of {} entries changed, FD {:.6g}\n", options.input.string(),
+  AtomicFile clip = write_temporary(options.output, noisy.clip);
+  if (!options.mask.empty()) write_clip(options.mask, mask_of(noisy));
+  clip.commit();
+  const bool any_left = !(clean.samples - noisy.clip.samples).array().isNaN().all();
+  fmt::print("{} -> {}: {} of {} entries changed, FD {}\n", options.input.string(),
              options.output.string(), noisy.touched.count(), noisy.touched.size(),
-             frobenius_distance(clean.samples, noisy.clip.samples));
+             any_left ? fmt::format("{:.6g}", frobenius_distance(clean.samples, noisy.clip.samples))
+                      : "of nothing left");
   return ExitCode::done;
 }
 
@@ -40,9 +56,15 @@ ExitCode run(const CorruptOptions& options) {
 void add_corrupt(CLI::App& program, Action& action) {
   CLI::App& command = *program.add_subcommand("corrupt", "Add noise to a recording");
   command.footer(
-      "Noise: gaussian-frames:frames=COUNT,mean=M,sd=S takes COUNT frames at random (or\n"
-      "fraction=SHARE of them) and adds a Gaussian to about half of the entries of each (Peng et\n"
-      "al., equation 7). The same seed gives the same noise everywhere.\n\n"
+      "Noise: NAME:key=value,key=value. docs/noise.md says what each does.\n"
+      "  gaussian-frames:frames=COUNT,mean=M,sd=S  or fraction=SHARE (Peng et al., equation 7)\n"
+      "  gaussian:sd=S                             or snr=DECIBEL\n"
+      "  dropout:fraction=SHARE,fill=zero|nan,background=gaussian|none,snr=DECIBEL\n"
+      "  burst:count=RUNS,length=FRAMES,sd=S       or fraction=SHARE\n"
+      "  gap:count=RUNS,length=FRAMES              or fraction=SHARE\n"
+      "  swap:count=RUNS,length=FRAMES             or fraction=SHARE\n"
+      "  drift:count=RUNS,length=FRAMES,sd=S       or fraction=SHARE\n"
+      "The same seed gives the same noise everywhere.\n\n"
       "Example:\n"
       "  moclean corrupt walk.bvh -o noisy.csv --noise gaussian-frames:frames=400,mean=1,sd=1.2 "
       "--seed 1");
@@ -53,6 +75,10 @@ void add_corrupt(CLI::App& program, Action& action) {
   command.add_option("-o,--output", options->output, "File (.csv .npy)")
       ->required()
       ->type_name("OUTPUT");
+  command
+      .add_option("--mask", options->mask,
+                  "Also write what the noise touched: 1 there, else 0 (.csv .npy)")
+      ->type_name("FILE");
   command.add_option("--noise", options->noise, "Noise model and its settings")
       ->required()
       ->type_name("SPEC");

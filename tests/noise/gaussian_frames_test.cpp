@@ -18,10 +18,12 @@ using testing::ThrowsMessage;
 
 // The noise alone: what is added to zeros.
 Matrix noise_alone(const GaussianFrames& noise, Index frames, Index columns, std::uint64_t seed) {
-  Matrix samples = Matrix::Zero(frames, columns);
+  Clip clip{.samples = Matrix::Zero(frames, columns),
+            .columns = default_column_names(columns),
+            .unit = ""};
   Random random(seed);
-  add_noise(noise, random, samples);
-  return samples;
+  add_noise(noise, random, clip);
+  return clip.samples;
 }
 
 Index frames_changed(const Matrix& added) { return (added.array() != 0).rowwise().any().count(); }
@@ -79,15 +81,15 @@ TEST(GaussianFrames, TreatsColumnsIndependently) {
 TEST(GaussianFrames, DoesNotDependOnTheSamples) {
   Matrix clean = test::random_matrix(30, 9, 3);
   clean(4, 5) = std::numeric_limits<double>::quiet_NaN();
-  Matrix noisy = clean;
+  Clip noisy{.samples = clean, .columns = default_column_names(9), .unit = ""};
   Random random(5);
 
-  add_noise({.frames = 30}, random, noisy);
+  add_noise(GaussianFrames{.frames = 30}, random, noisy);
 
   const Matrix alone = noise_alone({.frames = 30}, 30, 9, 5);
   Matrix expected = clean + alone;
   expected(4, 5) = clean(4, 5);
-  EXPECT_TRUE(test::same_bits(noisy, expected));
+  EXPECT_TRUE(test::same_bits(noisy.samples, expected));
 }
 
 // Printed once by this code and kept: a platform on which they differ breaks reproducibility.

@@ -42,8 +42,9 @@ TEST(ParseNoise, ReadsBackWhatToStringWrites) {
 }
 
 TEST(ParseNoise, NamesWhatIsWrongAndWhatWouldBeRight) {
-  expect_refused("salt:frames=1", "unknown noise 'salt', expected gaussian-frames");
-  expect_refused("", "unknown noise '', expected gaussian-frames");
+  const std::string all = "gaussian-frames, gaussian, dropout, burst, gap, swap, drift";
+  expect_refused("salt:frames=1", "unknown noise 'salt', expected one of " + all);
+  expect_refused("", "unknown noise '', expected one of " + all);
   expect_refused("gaussian-frames:frame=4",
                  "noise gaussian-frames: unknown key 'frame', expected one of frames, fraction, "
                  "mean, sd");
@@ -78,6 +79,40 @@ TEST(ParseNoise, RefusesValuesThatAreNotTheNumberExpected) {
   expect_refused("gaussian-frames:frames=1,sd=-2",
                  "gaussian-frames: sd is -2, expected at least 0");
   expect_refused("gaussian-frames:fraction=2", "gaussian-frames: fraction is 2, expected 0 to 1");
+}
+
+TEST(ParseNoise, ReadsEveryModel) {
+  EXPECT_EQ(parse_noise("gaussian:snr=20"), Noise(Gaussian{.snr = 20.0}));
+  EXPECT_EQ(parse_noise("dropout:fill=nan,fraction=0.4"),
+            Noise(Dropout{.fraction = 0.4, .fill = Dropout::Fill::nan}));
+  EXPECT_EQ(parse_noise("burst:count=3,length=40,sd=2"),
+            Noise(Burst{.runs = {.count = 3, .length = 40}, .sd = 2}));
+  EXPECT_EQ(parse_noise("gap:fraction=0.1"), Noise(Gap{.runs = {.fraction = 0.1}}));
+  EXPECT_EQ(parse_noise("swap:count=2"), Noise(Swap{.runs = {.count = 2}}));
+  EXPECT_EQ(parse_noise("drift:count=2,sd=9"), Noise(Drift{.runs = {.count = 2}, .sd = 9}));
+  for (const char* text :
+       {"gaussian:sd=0.1", "dropout:fraction=0.1,fill=nan,background=none,snr=15",
+        "burst:count=3,length=40,sd=2", "swap:fraction=0.25,length=60"})
+    EXPECT_EQ(to_string(parse_noise(text)), text);
+}
+
+TEST(Corrupt, EveryModelRepeatsWithTheSeedAndKeepsToItsMask) {
+  const Clip walk = test::synthetic_walk(100);
+  for (const char* model :
+       {"gaussian-frames:frames=20", "gaussian:snr=10", "dropout:background=none,fill=nan",
+        "burst:count=4,length=20", "gap:count=4,length=20", "swap:count=4,length=20",
+        "drift:count=4,length=20"}) {
+    const Noise noise = parse_noise(model);
+
+    const Corrupted noisy = corrupt(walk, noise, 3), again = corrupt(walk, noise, 3);
+
+    EXPECT_TRUE(test::same_bits(noisy.clip.samples, again.clip.samples)) << model;
+    EXPECT_FALSE(test::same_bits(noisy.clip.samples, corrupt(walk, noise, 4).clip.samples));
+    EXPECT_TRUE((noisy.touched == again.touched).all()) << model;
+    const Mask differs = noisy.clip.samples.array() != walk.samples.array();
+    EXPECT_GT(differs.count(), 0) << model;
+    EXPECT_TRUE((differs == noisy.touched).all()) << model;
+  }
 }
 
 TEST(Corrupt, MarksExactlyTheEntriesThatDiffer) {

@@ -79,6 +79,20 @@ inline double five_standard_errors(double sd, double samples) {
 /// precision throughout (assimp): about 20 roundings of 6e-8 down a chain of ten joints.
 inline double single_precision_reader() { return 1e-5; }
 
+/// A figure of a paper's table, printed with four decimals.
+inline double four_decimals() { return 5e-5; }
+
+/// Relative error of a matrix completed to a residual of 1e-4 over seven tenths of its entries: the
+/// unseen ones come out worse than the seen ones, by less than an order.
+inline double completion() { return 1e-3; }
+
+/// Absolute difference of a filtered sample of magnitude 10 from SciPy's, printed with 15 digits:
+/// what the project asks of its filters.
+inline double scipy() { return 1e-10; }
+
+/// Relative error of one rounding to single precision.
+inline double single_rounding() { return 6e-8; }
+
 /// Relative error of a bone's length where its file prints direction and length with six digits.
 inline double printed_digits() { return 5e-6; }
 

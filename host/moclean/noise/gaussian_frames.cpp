@@ -32,7 +32,7 @@ void check(const GaussianFrames& noise) {
 
 }  // namespace
 
-GaussianFrames parse_gaussian_frames(const NoiseSpecification& specification) {
+GaussianFrames parse_gaussian_frames(const Specification& specification) {
   specification.allow({"frames", "fraction", "mean", "sd"});
   if (specification.has("frames") && specification.has("fraction"))
     throw ArgumentError("gaussian-frames takes frames= or fraction=, not both");
@@ -57,14 +57,19 @@ std::string to_string(const GaussianFrames& noise) {
 }
 
 // X^ = X + G(mean, sd) .* (1 - ((U(0, 1) - 0.5) > 0)) on the chosen frames.
-void add_noise(const GaussianFrames& noise, Random& random, Matrix& samples) {
+Mask add_noise(const GaussianFrames& noise, Random& random, Clip& clip) {
   check(noise);
+  Matrix& samples = clip.samples;
+  Mask touched = Mask::Constant(samples.rows(), samples.cols(), false);
   for (const Index f : random.choose(frames_touched(noise, samples.rows()), samples.rows()))
-    for (double& x : samples.row(f)) {
+    for (Index c = 0; c < samples.cols(); ++c) {
       const double g = noise.mean + noise.sd * random.normal();
       const bool kept = random.uniform() - 0.5 > 0;
-      if (!kept && !std::isnan(x)) x += g;
+      if (kept || std::isnan(samples(f, c))) continue;
+      samples(f, c) += g;
+      touched(f, c) = true;
     }
+  return touched;
 }
 
 }  // namespace moclean

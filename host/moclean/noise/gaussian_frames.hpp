@@ -1,10 +1,11 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
-#include "moclean/core/matrix.hpp"
 #include "moclean/core/random.hpp"
-#include "moclean/noise/specification.hpp"
+#include "moclean/core/specification.hpp"
+#include "moclean/motion/clip.hpp"
 
 namespace moclean {
 
@@ -17,16 +18,19 @@ struct GaussianFrames {
   double sd = 1.2;      ///< in the unit of the clip, >= 0
 
   bool operator==(const GaussianFrames&) const = default;
+
+  static constexpr std::string_view name = "gaussian-frames";
 };
 
 /// Reads the keys frames or fraction (one of them is required), mean and sd.
-GaussianFrames parse_gaussian_frames(const NoiseSpecification& specification);
+GaussianFrames parse_gaussian_frames(const Specification& specification);
 
 std::string to_string(const GaussianFrames& noise);
 
-/// Adds the noise to `samples` [frames x columns]; NaN entries stay as they are. Every entry of a
-/// chosen frame consumes its draws whatever it holds, so the noise does not depend on the samples.
-/// Throws ArgumentError if a parameter is out of range or there are fewer frames than asked for.
-void add_noise(const GaussianFrames& noise, Random& random, Matrix& samples);
+/// Adds the noise to the clip's samples and returns the entries it touched; NaN entries stay as
+/// they are. Every entry of a chosen frame consumes its draws whatever it holds, so the noise does
+/// not depend on the samples. Throws ArgumentError if a parameter is out of range or there are
+/// fewer frames than asked for.
+Mask add_noise(const GaussianFrames& noise, Random& random, Clip& clip);
 
 }  // namespace moclean

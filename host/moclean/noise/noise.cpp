@@ -1,29 +1,48 @@
 #include "moclean/noise/noise.hpp"
 
-#include <fmt/format.h>
-
-#include "moclean/core/error.hpp"
-#include "moclean/noise/specification.hpp"
+#include "moclean/core/parameters.hpp"
 
 namespace moclean {
+namespace {
+
+template <class Model>
+Model read(const Specification& specification) {
+  if constexpr (std::is_same_v<Model, GaussianFrames>)
+    return parse_gaussian_frames(specification);
+  else
+    return read_parameters<Model>(specification);
+}
+
+template <class Model>
+std::string write(const Model& model) {
+  if constexpr (std::is_same_v<Model, GaussianFrames>)
+    return to_string(model);
+  else
+    return to_specification(model);
+}
+
+}  // namespace
+
+std::vector<std::string_view> noise_names() { return names_of<Noise>(); }
 
 Noise parse_noise(std::string_view specification) {
-  const NoiseSpecification parsed(specification);
-  if (parsed.name() == "gaussian-frames") return parse_gaussian_frames(parsed);
-  throw ArgumentError(fmt::format("unknown noise '{}', expected gaussian-frames", parsed.name()));
+  const Specification parsed("noise", specification);
+  const auto noise = find_alternative<Noise>(
+      parsed,
+      []<class Model>(const Specification& given, const Model&) { return read<Model>(given); });
+  if (!noise) parsed.throw_unknown(noise_names());
+  return *noise;
 }
 
 std::string to_string(const Noise& noise) {
-  return std::visit([](const auto& model) { return to_string(model); }, noise);
+  return std::visit([](const auto& model) { return write(model); }, noise);
 }
 
 Corrupted corrupt(const Clip& clip, const Noise& noise, std::uint64_t seed) {
   Corrupted result{clip, {}};
   Random random(seed);
-  std::visit([&](const auto& model) { add_noise(model, random, result.clip.samples); }, noise);
-
-  const auto clean = clip.samples.array();
-  result.touched = !clean.isNaN() && result.clip.samples.array() != clean;
+  result.touched =
+      std::visit([&](const auto& model) { return add_noise(model, random, result.clip); }, noise);
   return result;
 }
 

@@ -4,14 +4,20 @@
 #include <string>
 #include <string_view>
 #include <variant>
+#include <vector>
 
 #include "moclean/motion/clip.hpp"
+#include "moclean/noise/gaussian.hpp"
 #include "moclean/noise/gaussian_frames.hpp"
+#include "moclean/noise/runs.hpp"
 
 namespace moclean {
 
 /// Every noise model there is.
-using Noise = std::variant<GaussianFrames>;
+using Noise = std::variant<GaussianFrames, Gaussian, Dropout, Burst, Gap, Swap, Drift>;
+
+/// What their specifications begin with.
+std::vector<std::string_view> noise_names();
 
 /// Reads `name:key=value,key=value`, for instance `gaussian-frames:frames=400,mean=1,sd=1.2`.
 /// Throws ArgumentError naming the part that is wrong and what would be right.
@@ -20,11 +26,11 @@ Noise parse_noise(std::string_view specification);
 /// The specification `parse_noise` reads back to the same noise.
 std::string to_string(const Noise& noise);
 
-/// A noisy clip and where it differs from the clean one; entries that were NaN count as untouched.
+/// A noisy clip and what the noise touched: its gross errors, which a method ought to find. Entries
+/// that were NaN count as untouched, and so does what the model calls background (see each).
 struct Corrupted {
   Clip clip;
-  Eigen::Array<bool, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>
-      touched;  ///< [frames x columns]
+  Mask touched;  ///< [frames x columns]
 };
 
 /// Adds noise; the same clip, noise and seed give the same bits on every platform.
