@@ -1,0 +1,205 @@
+#include "moclean/filter/window.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "moclean/core/error.hpp"
+
+namespace moclean {
+namespace {
+
+// A normal distribution's standard deviation over its median absolute deviation.
+constexpr double deviation_per_mad = 1.4826;
+
+void require_odd(std::string_view filter, Index window) {
+  if (window < 1 || window % 2 == 0)
+    throw ArgumentError(
+        fmt::format("{}: window is {}, expected an odd number of frames", filter, window));
+}
+
+// Weighted mean around each sample, weights[t] for the samples t frames before and after.
+void weighted_mean(const std::vector<double>& weights, std::span<double> channel) {
+  const std::vector<double> y(channel.begin(), channel.end());
+  const auto frames = static_cast<Index>(y.size());
+  const auto reach = static_cast<Index>(weights.size()) - 1;
+  for (Index i = 0; i < frames; ++i) {
+    double& result = channel[static_cast<std::size_t>(i)];
+    if (std::isnan(result)) continue;
+    double sum = 0, weight = 0;
+    for (Index j = std::max<Index>(0, i - reach); j <= std::min(frames - 1, i + reach); ++j) {
+      const double w = weights[static_cast<std::size_t>(std::abs(i - j))];
+      const double x = y[static_cast<std::size_t>(j)];
+      if (std::isnan(x)) continue;
+      sum += w * x;
+      weight += w;
+    }
+    result = sum / weight;
+  }
+}
+
+// The observed samples of a moving window in increasing order.
+class SortedWindow {
+ public:
+  void insert(double x) {
+    if (!std::isnan(x)) values_.insert(std::ranges::upper_bound(values_, x), x);
+  }
+  void remove(double x) {
+    if (!std::isnan(x)) values_.erase(std::ranges::lower_bound(values_, x));
+  }
+
+  double median() const {
+    const std::size_t n = values_.size();
+    return n % 2 != 0 ? values_[n / 2] : (values_[n / 2 - 1] + values_[n / 2]) / 2;
+  }
+
+  // Median of |x - m|: the deviations grow outwards from m on both sides, so that merging the sides
+  // gives them in order.
+  double median_deviation(double m) const {
+    const std::size_t n = values_.size();
+    auto right = static_cast<std::size_t>(std::ranges::lower_bound(values_, m) - values_.begin());
+    std::size_t left = right;  // one past the next on the left
+    double last = 0, before = 0;
+    for (std::size_t taken = 0; taken <= n / 2; ++taken) {
+      before = last;
+      const bool from_left = right == n || (left > 0 && m - values_[left - 1] < values_[right] - m);
+      last = from_left ? m - values_[--left] : values_[right++] - m;
+    }
+    return n % 2 != 0 ? last : (before + last) / 2;
+  }
+
+ private:
+  std::vector<double> values_;
+};
+
+// Calls replace(x, window) for the observed samples of [begin, end), the window being centred on
+// them.
+template <class Replace>
+void replace_each(const std::vector<double>& y, std::size_t begin, std::size_t end,
+                  std::size_t reach, std::span<double> channel, const Replace& replace) {
+  SortedWindow sorted;
+  const std::size_t first = begin < reach ? 0 : begin - reach;
+  for (std::size_t i = first; i < std::min(begin + reach, y.size()); ++i) sorted.insert(y[i]);
+  for (std::size_t i = begin; i < end; ++i) {
+    if (i + reach < y.size()) sorted.insert(y[i + reach]);
+    if (i > begin && i > reach) sorted.remove(y[i - reach - 1]);
+    if (!std::isnan(y[i])) replace(channel[i], sorted);
+  }
+}
+
+// The whole windows of `width` neighbouring samples side by side, for compilers to put into vector
+// lanes: samples[k][l] is the k-th of the l-th window. 7 to 12 times as fast as a sorted window.
+class WindowBlock {
+ public:
+  static constexpr std::size_t width = 64, largest_window = 15;
+  using Row = std::array<double, width>;
+
+  // The windows that begin with y, y + 1 ...
+  WindowBlock(const double* y, std::size_t window) : window_(window) {
+    for (std::size_t k = 0; k < window; ++k) std::copy_n(y + k, width, samples_[k].begin());
+  }
+
+  // Bubbles the larger half of each window to its end; the least of it is the median.
+  const Row& medians() {
+    const std::size_t half = window_ / 2;
+    for (std::size_t pass = 0; pass <= half; ++pass)
+      for (std::size_t k = 0; k + 1 < window_ - pass; ++k)
+        for (std::size_t l = 0; l < width; ++l) {
+          const double a = samples_[k][l], b = samples_[k + 1][l];
+          samples_[k][l] = b < a ? b : a;
+          samples_[k + 1][l] = b < a ? a : b;
+        }
+    return samples_[half];
+  }
+
+  void replace_by_deviations(const Row& centre) {
+    for (std::size_t k = 0; k < window_; ++k)
+      for (std::size_t l = 0; l < width; ++l) samples_[k][l] = std::abs(samples_[k][l] - centre[l]);
+  }
+
+ private:
+  std::size_t window_;
+  std::array<Row, largest_window> samples_;
+};
+
+// Calls replace(x, window) for every observed sample, replace_block(x, block) for
+// WindowBlock::width of them where none is missing and all windows are whole. Both have to give the
+// same bits.
+template <class Replace, class ReplaceBlock>
+void for_each_window(Index window, std::span<double> channel, const Replace& replace,
+                     const ReplaceBlock& replace_block) {
+  const std::vector<double> y(channel.begin(), channel.end());
+  const auto length = static_cast<std::size_t>(window), reach = length / 2;
+  const bool complete = std::ranges::none_of(y, [](double x) { return std::isnan(x); });
+  std::size_t i = 0;
+  if (complete && length <= WindowBlock::largest_window && y.size() > 2 * reach) {
+    replace_each(y, 0, reach, reach, channel, replace);
+    for (i = reach; i + WindowBlock::width + reach <= y.size(); i += WindowBlock::width) {
+      WindowBlock block(y.data() + i - reach, length);
+      replace_block(channel.subspan(i, WindowBlock::width), block);
+    }
+  }
+  replace_each(y, i, y.size(), reach, channel, replace);
+}
+
+}  // namespace
+
+void check(const MovingAverage& filter) { require_odd(MovingAverage::name, filter.window); }
+
+void check(const GaussianFilter& filter) {
+  if (!(filter.sd > 0 && filter.sd <= 1e6))
+    throw ArgumentError(
+        fmt::format("gaussian: sd is {}, expected a positive number of frames", filter.sd));
+}
+
+void check(const MedianFilter& filter) { require_odd(MedianFilter::name, filter.window); }
+
+void check(const Hampel& filter) {
+  require_odd(Hampel::name, filter.window);
+  if (!(filter.sigmas >= 0 && std::isfinite(filter.sigmas)))
+    throw ArgumentError(fmt::format("hampel: sigmas is {}, expected at least 0", filter.sigmas));
+}
+
+void smooth(const MovingAverage& filter, double, std::span<double> channel) {
+  weighted_mean(std::vector<double>(static_cast<std::size_t>(filter.window / 2 + 1), 1.0), channel);
+}
+
+void smooth(const GaussianFilter& filter, double, std::span<double> channel) {
+  constexpr double deviations = 4;
+  std::vector<double> weights(static_cast<std::size_t>(deviations * filter.sd + 0.5) + 1);
+  for (std::size_t t = 0; t < weights.size(); ++t) {
+    const double x = static_cast<double>(t) / filter.sd;
+    weights[t] = std::exp(-x * x / 2);
+  }
+  weighted_mean(weights, channel);
+}
+
+void smooth(const MedianFilter& filter, double, std::span<double> channel) {
+  for_each_window(
+      filter.window, channel, [](double& x, const SortedWindow& window) { x = window.median(); },
+      [](std::span<double> x, WindowBlock& block) {
+        std::ranges::copy(block.medians(), x.begin());
+      });
+}
+
+void smooth(const Hampel& filter, double, std::span<double> channel) {
+  const auto bound = [&](double mad) { return filter.sigmas * deviation_per_mad * mad; };
+  for_each_window(
+      filter.window, channel,
+      [&](double& x, const SortedWindow& window) {
+        const double m = window.median();
+        if (std::abs(x - m) > bound(window.median_deviation(m))) x = m;
+      },
+      [&](std::span<double> x, WindowBlock& block) {
+        const WindowBlock::Row m = block.medians();
+        block.replace_by_deviations(m);
+        const WindowBlock::Row& mad = block.medians();
+        for (std::size_t l = 0; l < WindowBlock::width; ++l)
+          if (std::abs(x[l] - m[l]) > bound(mad[l])) x[l] = m[l];
+      });
+}
+
+}  // namespace moclean

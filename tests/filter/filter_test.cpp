@@ -1,0 +1,90 @@
+#include "moclean/filter/filter.hpp"
+
+#include <limits>
+
+#include <gmock/gmock.h>
+
+#include "moclean/core/error.hpp"
+
+#include "support/matrix.hpp"
+#include "support/synthetic_walk.hpp"
+
+namespace moclean {
+namespace {
+
+using testing::ThrowsMessage;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+// One of each kind.
+std::vector<Filter> every_filter() {
+  return {MovingAverage{}, GaussianFilter{}, MedianFilter{},    Hampel{},        Butterworth{},
+          SavitzkyGolay{}, Whittaker{},      RobustWhittaker{}, KalmanSmoother{}};
+}
+
+TEST(Filtered, CoversEveryFilter) {
+  ASSERT_EQ(every_filter().size(), std::variant_size_v<Filter>);
+  for (std::size_t i = 0; i < every_filter().size(); ++i) EXPECT_EQ(every_filter()[i].index(), i);
+}
+
+TEST(Filtered, KeepsGapsAndNamesAndTreatsEveryColumnAlike) {
+  Clip walk = test::synthetic_walk(60);
+  walk.samples.col(5) = walk.samples.col(4);
+  walk.samples.block(20, 7, 12, 1).setConstant(nan);
+  walk.samples.col(9).setConstant(nan);
+  for (const Filter& filter : every_filter()) {
+    SCOPED_TRACE(name_of(filter));
+
+    const Clip result = filtered(walk, filter);
+
+    EXPECT_EQ(result.columns, walk.columns);
+    EXPECT_EQ(result.frame_rate, walk.frame_rate);
+    EXPECT_TRUE((result.samples.array().isNaN() == walk.samples.array().isNaN()).all());
+    EXPECT_TRUE(test::same_bits(Matrix(result.samples.col(5)), Matrix(result.samples.col(4))));
+  }
+}
+
+TEST(Filtered, DoesNotDependOnTheNumberOfThreads) {
+  const Clip walk = test::synthetic_walk(80);
+  for (const Filter& filter : every_filter())
+    EXPECT_TRUE(
+        test::same_bits(filtered(walk, filter, 1).samples, filtered(walk, filter, 5).samples))
+        << name_of(filter);
+}
+
+TEST(Filtered, TakesTheFrameRateFromTheClip) {
+  Clip slow = test::synthetic_walk(80), fast = slow;
+  fast.frame_rate = 240;
+
+  for (const Filter& filter : every_filter())
+    EXPECT_EQ(test::same_bits(filtered(slow, filter).samples, filtered(fast, filter).samples),
+              !needs_frame_rate(filter))
+        << name_of(filter);
+}
+
+TEST(Filtered, RefusesAClipWithoutTheFrameRateItNeeds) {
+  Clip walk = test::synthetic_walk(8);
+  walk.frame_rate = 0;
+
+  EXPECT_THAT([&] { filtered(walk, Butterworth{}); },
+              ThrowsMessage<ArgumentError>(
+                  "butterworth needs the frame rate, which the recording does not state"));
+  EXPECT_THROW(filtered(walk, KalmanSmoother{}), ArgumentError);
+  EXPECT_NO_THROW(filtered(walk, MedianFilter{}));
+}
+
+TEST(Filtered, RefusesParametersOutOfRangeOnAnyThread) {
+  const Clip walk = test::synthetic_walk(8);
+
+  EXPECT_THROW(filtered(walk, MedianFilter{.window = 2}, 4), ArgumentError);
+  EXPECT_THROW(filtered(walk, Butterworth{.cutoff = 70}, 4), ArgumentError);
+}
+
+TEST(Filters, AreWrittenWithEveryParameter) {
+  EXPECT_EQ(to_string(Filter(Hampel{.window = 7, .sigmas = 3})), "hampel:window=7,sigmas=3");
+  EXPECT_EQ(to_string(Filter(KalmanSmoother{.model = KalmanSmoother::Model::acceleration})),
+            "kalman:model=acceleration,process=1000,measurement=1");
+}
+
+}  // namespace
+}  // namespace moclean
