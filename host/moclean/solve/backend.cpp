@@ -7,14 +7,16 @@
 #include "moclean/core/error.hpp"
 
 namespace moclean {
+namespace {
 
-void require_finite(const SegmentBatch& data) {
+void require_entries(const SegmentBatch& data, bool missing_accepted) {
   for (Index b = 0; b < data.segments(); ++b) {
     const ConstMatrixView segment = data.segment(b);
     for (Index i = 0; i < segment.rows(); ++i)
       for (Index j = 0; j < segment.cols(); ++j) {
         const double entry = segment(i, j);
         if (std::abs(entry) <= largest_entry) continue;
+        if (missing_accepted && std::isnan(entry)) continue;
         if (std::isfinite(entry))
           throw ShapeError(fmt::format(
               "segment {}: {} at row {}, column {} is too large (at most {} in magnitude)", b,
@@ -25,6 +27,22 @@ void require_finite(const SegmentBatch& data) {
                         b, i, j));
       }
   }
+}
+
+}  // namespace
+
+bool accepts_missing(const Method& method) {
+  return std::visit(
+      []<class M>(const M&) {
+        return requires { M::accepts_missing; };
+      },
+      method);
+}
+
+void require_finite(const SegmentBatch& data) { require_entries(data, false); }
+
+void require_usable(const SegmentBatch& data, const Method& method) {
+  require_entries(data, accepts_missing(method));
 }
 
 }  // namespace moclean

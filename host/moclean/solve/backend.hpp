@@ -7,22 +7,31 @@
 #include <vector>
 
 #include "moclean/core/segment_batch.hpp"
+#include "moclean/solve/matrix_completion.hpp"
 #include "moclean/solve/robust_pca.hpp"
+#include "moclean/solve/singular_value_thresholding.hpp"
+#include "moclean/solve/truncated_svd.hpp"
 
 namespace moclean {
 
 /// What is computed. A method missing on one backend does not compile (std::visit).
-using Method = std::variant<RobustPca>;
+using Method = std::variant<RobustPca, TruncatedSvd, SingularValueThresholding, MatrixCompletion>;
+
+/// Whether a method takes NaN as "not observed"; the others need every sample.
+bool accepts_missing(const Method& method);
 
 /// How the solution of one segment came about.
 struct SegmentOutcome {
   int iterations = 0;
-  int rank = 0;         ///< singular values of the last X above 1/mu
-  double residual = 0;  ///< |D - A - E|_F / |D|_F after the last iteration; 0 for a zero segment
+  int rank = 0;  ///< of A: singular values above the last threshold
+  /// After the last iteration: |D - A - E|_F / |D|_F of robust PCA, |P(D - A)|_F / |P(D)|_F of
+  /// completion; 0 for a zero segment, and for methods of one step.
+  double residual = 0;
   bool converged = false;
 };
 
-/// D = low_rank + sparse, segment by segment, in the layout of the data.
+/// D = low_rank + sparse, segment by segment, in the layout of the data; where D is NaN, sparse is
+/// 0.
 struct Solution {
   SegmentBatch low_rank;  ///< A
   SegmentBatch sparse;    ///< E
@@ -45,8 +54,12 @@ struct Monitor {
 inline constexpr double largest_entry = 1e140;
 
 /// Throws ShapeError naming segment, row and column (from 0) of the first entry that is NaN,
-/// infinite or larger than `largest_entry`. Every backend calls it before it computes anything.
+/// infinite or larger than `largest_entry`.
 void require_finite(const SegmentBatch& data);
+
+/// The same, but lets NaN pass if the method accepts it. Every backend calls it before it computes
+/// anything.
+void require_usable(const SegmentBatch& data, const Method& method);
 
 /// Where a method is computed.
 class Backend {
@@ -58,8 +71,8 @@ class Backend {
 
   /// Solves every segment. The result of a segment depends on its own data and the method only, bit
   /// for bit: not on its neighbours or its place in the batch. Throws ShapeError naming row and
-  /// column if the data holds NaN or infinity, ArgumentError for parameters out of range,
-  /// Cancelled.
+  /// column if the data holds infinity, or NaN that the method does not accept, ArgumentError for
+  /// parameters out of range, Cancelled.
   virtual Solution solve(const SegmentBatch& data, const Method& method,
                          const Monitor& monitor = {}) = 0;
 };

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <string>
+#include <string_view>
 
-#include "moclean/core/matrix.hpp"
+#include "moclean/core/parameters.hpp"
 
 namespace moclean {
 
@@ -28,6 +30,16 @@ struct RobustPca {
   UpdateOrder order = UpdateOrder::ae;
 
   bool operator==(const RobustPca&) const = default;
+
+  static constexpr std::array<std::string_view, 2> orders = {"ae", "ea"};
+  static void visit(auto& self, auto& visitor) {
+    visitor("lambda", self.lambda);
+    visitor("lambda-scale", self.lambda_scale);
+    visitor("rho", self.rho);
+    visitor("tolerance", self.tolerance);
+    visitor("max-iterations", self.max_iterations);
+    visitor("order", self.order, orders);
+  }
 };
 
 /// Throws ArgumentError naming the first parameter out of its range.

@@ -5,8 +5,11 @@
 
 #include <fmt/format.h>
 
+#include "moclean/core/error.hpp"
 #include "moclean/solve/opencl/concurrent.hpp"
+#include "moclean/solve/opencl/matrix_completion.hpp"
 #include "moclean/solve/opencl/robust_pca.hpp"
+#include "moclean/solve/opencl/spectral.hpp"
 
 namespace moclean {
 namespace {
@@ -32,29 +35,50 @@ Tuning tuning_of(const Device& device, const OpenClOptions& options) {
 /// What solves one batch at a time: a queue of the device, kernels and their scratch memory.
 class OpenClBackend::Worker {
  public:
-  /// Uses the queue of `device` itself.
+  /// Uses the queue of `device` itself. `tuning` has to outlive the worker.
   Worker(const Device& device, Precision precision, const Tuning& tuning)
-      : robust_pca_(solver_of(device, precision, tuning)) {}
+      : tuning_(tuning), device_(device), robust_pca_(solver_of(device_, precision, tuning)) {}
 
   /// Has a queue of its own.
   Worker(const Device& device, Device::AnotherQueue another, Precision precision,
          const Tuning& tuning)
-      : device_(std::in_place, device, another),
-        robust_pca_(solver_of(*device_, precision, tuning)) {}
+      : tuning_(tuning),
+        own_(std::in_place, device, another),
+        device_(*own_),
+        robust_pca_(solver_of(device_, precision, tuning)) {}
 
-  using RobustPcaSolver =
-      std::variant<opencl::RobustPcaSolver<double>, opencl::RobustPcaSolver<float>>;
-  RobustPcaSolver& robust_pca() { return robust_pca_; }
+  /// use(solver) with the solver of a method; those but robust PCA's are made at their first use.
+  template <class Use>
+  void with(const RobustPca&, const Use& use) {
+    std::visit(use, robust_pca_);
+  }
+  template <class Use>
+  void with(const MatrixCompletion&, const Use& use) {
+    if (!completion_) completion_.emplace(device_, tuning_);
+    use(*completion_);
+  }
+  template <class Spectral, class Use>
+  void with(const Spectral&, const Use& use) {
+    if (!spectral_) spectral_.emplace(device_, tuning_);
+    use(*spectral_);
+  }
 
  private:
+  using RobustPcaSolver =
+      std::variant<opencl::RobustPcaSolver<double>, opencl::RobustPcaSolver<float>>;
+
   static RobustPcaSolver solver_of(const Device& device, Precision precision,
                                    const Tuning& tuning) {
     if (precision == Precision::mixed) return opencl::RobustPcaSolver<float>(device, tuning);
     return opencl::RobustPcaSolver<double>(device, tuning);
   }
 
-  std::optional<Device> device_;
+  const Tuning& tuning_;
+  std::optional<Device> own_;
+  const Device& device_;
   RobustPcaSolver robust_pca_;
+  std::optional<opencl::SpectralSolver> spectral_;
+  std::optional<opencl::MatrixCompletionSolver> completion_;
 };
 
 OpenClBackend::OpenClBackend(const Device& device, const OpenClOptions& options)
@@ -72,13 +96,16 @@ std::string OpenClBackend::name() const {
 
 opencl::SegmentSize OpenClBackend::size_of(const SegmentBatch& data, Index b,
                                            const Method& method) const {
-  const opencl::SegmentSize size{
-      .memory = std::visit(
-          [&](const auto& chosen, const auto& solver) {
-            return solver.memory_of(data.rows(b), data.columns(), chosen);
-          },
-          method, workers_.front()->robust_pca()),
+  opencl::SegmentSize size{
+      .memory = 0,
       .stacked = static_cast<std::uint64_t>(data.rows(b) * data.pitch()) * sizeof(double)};
+  std::visit(
+      [&](const auto& chosen) {
+        workers_.front()->with(chosen, [&](const auto& solver) {
+          size.memory = solver.memory_of(data.rows(b), data.columns(), chosen);
+        });
+      },
+      method);
   const DeviceInfo& device = device_.info();
   if (size.memory > options_.memory_limit || size.stacked > device.max_allocation)
     throw DeviceError(fmt::format(
@@ -112,7 +139,14 @@ void OpenClBackend::prepare_workers(const opencl::BatchPlan& plan) {
         std::make_unique<Worker>(device_, Device::AnotherQueue{}, options_.precision, tuning_));
 }
 
-void OpenClBackend::require_reachable(const RobustPca& method) const {
+template <class Chosen>
+void OpenClBackend::require_precision(const Chosen&) const {
+  if (options_.precision == Precision::mixed)
+    throw ArgumentError(fmt::format("{} works in double precision (f64) only", Chosen::name));
+}
+
+template <>
+void OpenClBackend::require_precision(const RobustPca& method) const {
   if (options_.precision == Precision::mixed && method.tolerance < mixed_tolerance)
     throw ArgumentError(fmt::format(
         "mixed precision reaches a tolerance of {} at best, not {}; raise it or use f64",
@@ -124,10 +158,10 @@ Solution OpenClBackend::solve(const SegmentBatch& data, const Method& method,
   std::visit(
       [this](const auto& chosen) {
         check(chosen);
-        require_reachable(chosen);
+        require_precision(chosen);
       },
       method);
-  require_finite(data);
+  require_usable(data, method);
   Solution solution{SegmentBatch(data.columns(), data.first_rows()),
                     SegmentBatch(data.columns(), data.first_rows()),
                     std::vector<SegmentOutcome>(static_cast<std::size_t>(data.segments()))};
@@ -144,10 +178,12 @@ Solution OpenClBackend::solve(const SegmentBatch& data, const Method& method,
     const auto first = plan.first[static_cast<std::size_t>(batch)];
     const auto last = plan.first[static_cast<std::size_t>(batch) + 1];
     std::visit(
-        [&](const auto& chosen, auto& solver) {
-          solver.solve(data, first, last, chosen, solution, finished, stop);
+        [&](const auto& chosen) {
+          workers_[static_cast<std::size_t>(worker)]->with(chosen, [&](auto& solver) {
+            solver.solve(data, first, last, chosen, solution, finished, stop);
+          });
         },
-        method, workers_[static_cast<std::size_t>(worker)]->robust_pca());
+        method);
   };
   opencl::for_each_concurrently(plan.queues, plan.batches(), monitor.stop, solve_batch);
   return solution;

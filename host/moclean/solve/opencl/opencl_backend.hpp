@@ -43,7 +43,8 @@ class OpenClBackend final : public Backend {
   const Tuning& tuning() const { return tuning_; }
 
   /// See Backend. Also throws DeviceError if one segment alone exceeds the memory limit, and
-  /// ArgumentError for a tolerance below mixed_tolerance in mixed precision.
+  /// ArgumentError for a tolerance below mixed_tolerance in mixed precision, and for any method but
+  /// robust PCA in it.
   Solution solve(const SegmentBatch& data, const Method& method,
                  const Monitor& monitor = {}) override;
 
@@ -53,7 +54,8 @@ class OpenClBackend final : public Backend {
   opencl::SegmentSize size_of(const SegmentBatch& data, Index b, const Method& method) const;
   opencl::BatchPlan plan_of(const SegmentBatch& data, const Method& method) const;
   void prepare_workers(const opencl::BatchPlan& plan);
-  void require_reachable(const RobustPca& method) const;
+  template <class Chosen>
+  void require_precision(const Chosen& method) const;
 
   const Device& device_;
   OpenClOptions options_;

@@ -9,7 +9,9 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/solve/reference/matrix_completion.hpp"
 #include "moclean/solve/reference/robust_pca.hpp"
+#include "moclean/solve/reference/spectral.hpp"
 
 namespace moclean {
 namespace {
@@ -50,7 +52,7 @@ std::string ReferenceBackend::name() const {
 Solution ReferenceBackend::solve(const SegmentBatch& data, const Method& method,
                                  const Monitor& monitor) {
   std::visit([](const auto& m) { check(m); }, method);
-  require_finite(data);
+  require_usable(data, method);
 
   Solution solution;
   solution.low_rank = SegmentBatch(data.columns(), data.first_rows());
@@ -60,11 +62,14 @@ Solution ReferenceBackend::solve(const SegmentBatch& data, const Method& method,
   Progress progress{.finished = 0, .total = data.segments()};
 
   for_each_index(data.segments(), jobs_, [&](Index b) {
-    const auto segment = std::visit(
-        [&](const auto& m) { return reference::solve(data.segment(b), m, monitor.stop); }, method);
-    solution.low_rank.segment(b) = segment.low_rank;
-    solution.sparse.segment(b) = segment.sparse;
-    solution.segments[static_cast<std::size_t>(b)] = segment.outcome;
+    std::visit(
+        [&](const auto& m) {
+          const auto segment = reference::solve(data.segment(b), m, monitor.stop);
+          solution.low_rank.segment(b) = segment.low_rank;
+          solution.sparse.segment(b) = segment.sparse;
+          solution.segments[static_cast<std::size_t>(b)] = segment.outcome;
+        },
+        method);
 
     const std::lock_guard lock(reporting);
     ++progress.finished;
