@@ -116,6 +116,12 @@ TEST(WeightsOf, AreZeroForWhatIsRounding) {
               ElementsAre(0.5, 0, 0));
 }
 
+TEST(WeightsOf, KeepWhatThereIsWhereTheMedianIsZero) {
+  const std::vector<double> sigma = {1, 1e-3, 1e-9, 1e-10};
+
+  EXPECT_THAT(weights_of(SingularValueThresholding{}, sigma, 9, 4), ElementsAre(1, 1, 0, 0));
+}
+
 TEST(WeightsOf, NeedAThresholdWhereTheMedianIsNoNoise) {
   const std::vector<double> sigma = {3, 1};
 

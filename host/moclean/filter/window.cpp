@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include <Eigen/Core>
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
@@ -90,37 +91,40 @@ void replace_each(const std::vector<double>& y, std::size_t begin, std::size_t e
   }
 }
 
-// The whole windows of `width` neighbouring samples side by side, for compilers to put into vector
-// lanes: samples[k][l] is the k-th of the l-th window. 7 to 12 times as fast as a sorted window.
+// The whole windows of `width` neighbouring samples side by side, in vector lanes: samples_[k](l)
+// is the k-th of the l-th window.
 class WindowBlock {
  public:
-  static constexpr std::size_t width = 64, largest_window = 15;
-  using Row = std::array<double, width>;
+  static constexpr Index width = 64, largest_window = 15;
+  using Row = Eigen::Array<double, width, 1>;
 
   // The windows that begin with y, y + 1 ...
   WindowBlock(const double* y, std::size_t window) : window_(window) {
-    for (std::size_t k = 0; k < window; ++k) std::copy_n(y + k, width, samples_[k].begin());
+    for (std::size_t k = 0; k < window; ++k) samples_[k] = Eigen::Map<const Row>(y + k);
   }
 
   // Bubbles the larger half of each window to its end; the least of it is the median.
   const Row& medians() {
     const std::size_t half = window_ / 2;
     for (std::size_t pass = 0; pass <= half; ++pass)
-      for (std::size_t k = 0; k + 1 < window_ - pass; ++k)
-        for (std::size_t l = 0; l < width; ++l) {
-          const double a = samples_[k][l], b = samples_[k + 1][l];
-          samples_[k][l] = b < a ? b : a;
-          samples_[k + 1][l] = b < a ? a : b;
-        }
+      for (std::size_t k = 0; k + 1 < window_ - pass; ++k) exchange(samples_[k], samples_[k + 1]);
     return samples_[half];
   }
 
   void replace_by_deviations(const Row& centre) {
-    for (std::size_t k = 0; k < window_; ++k)
-      for (std::size_t l = 0; l < width; ++l) samples_[k][l] = std::abs(samples_[k][l] - centre[l]);
+    for (std::size_t k = 0; k < window_; ++k) samples_[k] = (samples_[k] - centre).abs();
   }
 
  private:
+  static void exchange(Row& less, Row& more) {
+    for (Index l = 0; l < width; l += lanes) {
+      const Eigen::Array<double, lanes, 1> a = less.segment<lanes>(l), b = more.segment<lanes>(l);
+      less.segment<lanes>(l) = a.min(b);
+      more.segment<lanes>(l) = a.max(b);
+    }
+  }
+
+  static constexpr Index lanes = 8;
   std::size_t window_;
   std::array<Row, largest_window> samples_;
 };
@@ -135,11 +139,12 @@ void for_each_window(Index window, std::span<double> channel, const Replace& rep
   const auto length = static_cast<std::size_t>(window), reach = length / 2;
   const bool complete = std::ranges::none_of(y, [](double x) { return std::isnan(x); });
   std::size_t i = 0;
-  if (complete && length <= WindowBlock::largest_window && y.size() > 2 * reach) {
+  if (complete && window <= WindowBlock::largest_window && y.size() > 2 * reach) {
+    constexpr auto width = static_cast<std::size_t>(WindowBlock::width);
     replace_each(y, 0, reach, reach, channel, replace);
-    for (i = reach; i + WindowBlock::width + reach <= y.size(); i += WindowBlock::width) {
+    for (i = reach; i + width + reach <= y.size(); i += width) {
       WindowBlock block(y.data() + i - reach, length);
-      replace_block(channel.subspan(i, WindowBlock::width), block);
+      replace_block(channel.subspan(i, width), block);
     }
   }
   replace_each(y, i, y.size(), reach, channel, replace);
@@ -181,7 +186,7 @@ void smooth(const MedianFilter& filter, double, std::span<double> channel) {
   for_each_window(
       filter.window, channel, [](double& x, const SortedWindow& window) { x = window.median(); },
       [](std::span<double> x, WindowBlock& block) {
-        std::ranges::copy(block.medians(), x.begin());
+        Eigen::Map<WindowBlock::Row>(x.data()) = block.medians();
       });
 }
 
@@ -197,8 +202,10 @@ void smooth(const Hampel& filter, double, std::span<double> channel) {
         const WindowBlock::Row m = block.medians();
         block.replace_by_deviations(m);
         const WindowBlock::Row& mad = block.medians();
-        for (std::size_t l = 0; l < WindowBlock::width; ++l)
-          if (std::abs(x[l] - m[l]) > bound(mad[l])) x[l] = m[l];
+        for (Index l = 0; l < WindowBlock::width; ++l) {
+          double& sample = x[static_cast<std::size_t>(l)];
+          if (std::abs(sample - m(l)) > bound(mad(l))) sample = m(l);
+        }
       });
 }
 

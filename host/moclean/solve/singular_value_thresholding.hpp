@@ -17,6 +17,7 @@ namespace moclean {
 ///   1)))
 ///               / sqrt(mu)   (Gavish, Donoho 2014, equations 11 and 14)
 ///   soft  tau = median(sigma) (1 + sqrt(beta)) / sqrt(mu), the edge of the noise's singular values
+/// A median of zero, as in a matrix of low rank without noise, leaves the matrix as it is.
 /// With fewer than three rows or columns the median is no noise, and a threshold has to be given.
 struct SingularValueThresholding {
   enum class Shrink { soft, hard };

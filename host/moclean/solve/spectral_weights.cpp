@@ -9,8 +9,9 @@
 namespace moclean {
 namespace {
 
-// Below it a singular value is rounding, on one backend a little more than on another.
-constexpr double negligible = 1e-10;
+// Below it, relative to the largest, a singular value counts as zero. A Gram matrix cannot tell
+// values below about 1e-8 from rounding.
+constexpr double negligible = 1e-7;
 
 // Weights of the singular values that are not negligible, zero for the others.
 template <class Weight>
@@ -29,6 +30,7 @@ double threshold_of(const SingularValueThresholding& method, std::span<const dou
     throw ArgumentError(
         fmt::format("svt has no rule for {} frames x {} columns; give threshold=", rows, columns));
   const std::size_t n = sigma.size();
+  if (sigma[n / 2] <= negligible * sigma[0]) return 0;  // no noise
   const double median = (sigma[(n - 1) / 2] + sigma[n / 2]) / 2;
   const double beta = static_cast<double>(least) / static_cast<double>(most);
   return threshold_factor(method.shrink, beta) * median;

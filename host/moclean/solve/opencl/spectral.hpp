@@ -12,7 +12,8 @@ namespace moclean::opencl {
 /// Truncated SVD and singular value thresholding of many segments at once on a device, in double.
 /// Singular values and vectors are those of Gram matrices, taken twice: the second is that of the
 /// data expressed in the eigenvectors of the first, whose columns have about the size of the
-/// singular values, so that small ones are known to relative accuracy, too.
+/// singular values, so that small ones are known better. What is below 1e-7 of the largest counts
+/// as zero (see weights_of()).
 class SpectralSolver {
  public:
   /// Throws ArgumentError for a tuning out of its range.
