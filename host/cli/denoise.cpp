@@ -39,6 +39,8 @@ std::optional<Tuning> kept_tuning(const fs::path& file, const DeviceInfo& device
 }
 
 OpenedBackend open_backend(const DenoiseOptions& options) {
+  if (!needs_backend(options.chain))  // no device is opened for filters
+    return {nullptr, std::make_unique<ReferenceBackend>(options.jobs), {.name = "host (filters)"}};
   if (options.backend == "reference") {
     auto reference = std::make_unique<ReferenceBackend>(options.jobs);
     const std::string name = reference->name();
@@ -79,14 +81,18 @@ std::string range(const std::vector<DenoisedSegment>& segments, const Value& val
                                      : fmt::format("{}-{}", value(least), value(most));
 }
 
+// What the segments say; nothing for filters.
+std::string segments_text(const std::vector<DenoisedSegment>& segments) {
+  if (segments.empty()) return "";
+  return fmt::format(" segments {}, iterations {}, rank {},", segments.size(),
+                     range(segments, [](const DenoisedSegment& s) { return s.outcome.iterations; }),
+                     range(segments, [](const DenoisedSegment& s) { return s.outcome.rank; }));
+}
+
 void print_summary(const TakeReport& take, const fs::path& result) {
-  fmt::print(
-      "{} -> {}: {} frames x {} columns, segments {}, iterations {}, rank {}, {:.3f} s, {:.0f} "
-      "frames/s\n",
-      take.file.string(), result.string(), take.frames, take.columns, take.segments.size(),
-      range(take.segments, [](const DenoisedSegment& s) { return s.outcome.iterations; }),
-      range(take.segments, [](const DenoisedSegment& s) { return s.outcome.rank; }),
-      take.solve_seconds, take.frames_per_second());
+  fmt::print("{} -> {}: {} frames x {} columns,{} {:.3f} s, {:.0f} frames/s\n", take.file.string(),
+             result.string(), take.frames, take.columns, segments_text(take.segments),
+             take.solve_seconds, take.frames_per_second());
   if (take.truth)
     fmt::print("{}: FD from the truth {:.4g} -> {:.4g}\n", take.file.string(), take.truth->fd_noisy,
                take.truth->fd_clean);
@@ -152,8 +158,16 @@ void add_denoise(CLI::App& program, Action& action) {
       "segment did not converge, 130 interrupted.\n\n"
       "The bounds of --verify hold for the default tolerance and are the same for any other;\n"
       "--precision mixed has its own.\n\n"
+      "A chain of filters only runs on the host; missing samples stay missing, and completion "
+      "fills\n"
+      "them. Steps: "
+      "slra rpca tsvd svt completion moving-average gaussian median hampel\n"
+      "butterworth savitzky-golay whittaker whittaker-l1 kalman; docs/methods.md has their "
+      "keys.\n\n"
       "Example:\n"
       "  moclean denoise walk.bvh -o clean.csv --segment-length 200 --verify\n"
+      "  moclean denoise walk.bvh -o clean.csv --method "
+      "hampel:window=7,sigmas=3+butterworth:cutoff=10\n"
       "  moclean denoise takes/ -o cleaned/ --json cleaned.json");
   const auto options = std::make_shared<DenoiseOptions>();
   add_denoise_options(command, *options);

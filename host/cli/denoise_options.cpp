@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <thread>
 
+#include <fmt/format.h>
+
 #include "moclean/core/error.hpp"
 #include "moclean/solve/opencl/opencl_backend.hpp"
 
@@ -47,20 +49,21 @@ void add_files(CLI::App& command, DenoiseOptions& options) {
 
 void add_segmentation(CLI::App& command, DenoiseOptions& options) {
   command
-      .add_option("--method", options.method_name,
-                  "slra cuts a take into segments, rpca takes it whole")
-      ->check(CLI::IsMember({"slra", "rpca"}))
+      .add_option(
+          "--method", options.method_name,
+          "Steps joined by +, each NAME or NAME:key=value,key=value (docs/methods.md); slra "
+          "cuts a take into segments, rpca takes it whole")
       ->capture_default_str()
       ->type_name("METHOD")
       ->group(method_group);
   auto* length = command
                      .add_option("--segment-length", options.segment_length,
-                                 "Equal segments of about so many frames (slra)")
+                                 "Equal segments of about so many frames (not rpca)")
                      ->check(CLI::PositiveNumber)
                      ->default_str("200")
                      ->type_name("N")
                      ->group(method_group);
-  command.add_option("--segments", options.segments, "So many equal segments (slra)")
+  command.add_option("--segments", options.segments, "So many equal segments (not rpca)")
       ->check(CLI::PositiveNumber)
       ->excludes(length)
       ->type_name("K")
@@ -217,16 +220,39 @@ void require_opencl(const DenoiseOptions& options) {
     throw ArgumentError("--precision mixed needs --backend opencl; the reference is double");
 }
 
-Segmentation segmentation_of(const DenoiseOptions& options) {
-  Segmentation segmentation;
-  segmentation.whole = options.method_name == "rpca";
-  if (segmentation.whole && (options.segment_length || options.segments))
+// The options of a method that stands in no step of the chain would have no effect.
+void require_used(const DenoiseOptions& options) {
+  bool robust_pca = false, segmented = false;
+  for (const Step& step : options.chain) {
+    const auto* low_rank = std::get_if<LowRank>(&step);
+    if (!low_rank) continue;
+    const bool is_robust_pca = std::holds_alternative<RobustPca>(low_rank->method);
+    robust_pca = robust_pca || is_robust_pca;
+    segmented = segmented || !(is_robust_pca && low_rank->segmentation.whole);
+  }
+  if (!segmented && (options.segment_length || options.segments))
     throw ArgumentError(
-        "rpca takes every recording whole; --segment-length and --segments belong to --method "
-        "slra");
-  if (options.segment_length) segmentation.length = *options.segment_length;
-  if (options.segments) segmentation.segments = *options.segments;
-  return segmentation;
+        "rpca and filters take every recording whole; --segment-length and --segments belong to "
+        "--method slra, tsvd, svt and completion");
+  if (!robust_pca && (options.tolerance || options.method != RobustPca{}))
+    throw ArgumentError(fmt::format(
+        "--lambda, --lambda-scale, --rho, --tolerance, --max-iterations and --order belong to "
+        "--method slra and rpca; the settings of others follow their names (--method {}:key=value)",
+        name_of(options.chain.front())));
+}
+
+void require_device_work(const DenoiseOptions& options) {
+  if (needs_backend(options.chain)) return;
+  if (options.verify)
+    throw ArgumentError("--verify needs a matrix method; filters run on the host");
+  if (options.profile)
+    throw ArgumentError("--profile needs a matrix method; filters run on the host");
+}
+
+std::optional<Segmentation> segmentation_given(const DenoiseOptions& options) {
+  if (options.segment_length) return Segmentation{.length = *options.segment_length};
+  if (options.segments) return Segmentation{.segments = *options.segments};
+  return std::nullopt;
 }
 
 }  // namespace
@@ -243,17 +269,23 @@ void add_denoise_options(CLI::App& command, DenoiseOptions& options) {
 }
 
 void complete(DenoiseOptions& options) {
-  options.segmentation = segmentation_of(options);
   require_opencl(options);
   const bool mixed = options.precision == Precision::mixed;
   if (mixed && options.products == ProductPath::clblast)
     throw ArgumentError("--precision mixed works with our own products only, not with clblast");
-  options.method.tolerance =
-      options.tolerance.value_or(mixed ? mixed_tolerance : RobustPca{}.tolerance);
-  if (mixed && options.method.tolerance < mixed_tolerance)
+  RobustPca defaults = options.method;
+  defaults.tolerance = options.tolerance.value_or(mixed ? mixed_tolerance : RobustPca{}.tolerance);
+  if (mixed && defaults.tolerance < mixed_tolerance)
     throw ArgumentError("--precision mixed reaches a tolerance of 1e-06 at best");
+  check(defaults);
+  options.chain = parse_chain(options.method_name, {defaults, segmentation_given(options)});
+  require_used(options);
+  require_device_work(options);
+  const LowRank* method = first_low_rank(options.chain);
+  options.segmentation = method ? method->segmentation : Segmentation{.whole = true};
+  const auto* robust_pca = method ? std::get_if<RobustPca>(&method->method) : nullptr;
+  options.method = robust_pca ? *robust_pca : defaults;
   if (options.memory_limit == 0) options.memory_limit = physical_memory() / 4;
-  check(options.method);
 }
 
 }  // namespace moclean::cli

@@ -8,7 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "moclean/denoise/low_rank.hpp"
+#include "moclean/denoise/chain.hpp"
 #include "moclean/linalg/precision.hpp"
 #include "moclean/linalg/tuning.hpp"
 
@@ -24,12 +24,13 @@ struct DenoiseOptions {
   std::filesystem::path outliers;  ///< empty: not asked for
   std::string format;              ///< "csv", "npy" or empty
 
-  std::string method_name = "slra";  ///< "slra" | "rpca"
+  std::string method_name = "slra";  ///< --method, as it was given
   std::optional<Index> segment_length;
   std::optional<Index> segments;
-  Segmentation segmentation;        ///< follows from the three above; set by complete()
+  Chain chain = {LowRank{}};        ///< follows from --method and its options; set by complete()
+  Segmentation segmentation;        ///< of the chain's first matrix method; set by complete()
   std::optional<double> tolerance;  ///< default: what the precision reaches
-  RobustPca method;                 ///< tolerance: set by complete()
+  RobustPca method;                 ///< what slra and rpca leave open; tolerance: by complete()
 
   std::string backend = "opencl";  ///< "opencl" | "reference"
   std::string device;

@@ -44,7 +44,6 @@ std::vector<int> parents_of(const Job& job, std::size_t take, const Clip& noisy)
 
 Report denoise_report(const Job& job, const TakeReport& take, ReportTake parts) {
   const DenoiseOptions& options = job.options;
-  const RobustPca& method = options.method;
   Report report{.title = take.file.filename().string(), .take = std::move(parts)};
   const auto add = [&](const char* name, std::string value) {
     report.parameters.emplace_back(name, std::move(value));
@@ -54,13 +53,17 @@ Report denoise_report(const Job& job, const TakeReport& take, ReportTake parts) 
   if (options.reading.frames.first || options.reading.frames.last)
     add("frames", frames_text(options.reading.frames));
   if (options.truth_frames) add("frames of the truth", frames_text(*options.truth_frames));
-  add("method", options.method_name);
-  add("segmentation", segmentation_text(options.segmentation));
-  add("lambda", lambda_text(method));
-  add("rho", fmt::format("{}", method.rho));
-  add("tolerance", fmt::format("{}", method.tolerance));
-  add("most iterations", fmt::format("{}", method.max_iterations));
-  add("order", to_string(method.order));
+  add("method", to_string(options.chain));
+  if (const LowRank* step = first_low_rank(options.chain)) {
+    add("segmentation", segmentation_text(step->segmentation));
+    if (const auto* method = std::get_if<RobustPca>(&step->method)) {
+      add("lambda", lambda_text(*method));
+      add("rho", fmt::format("{}", method->rho));
+      add("tolerance", fmt::format("{}", method->tolerance));
+      add("most iterations", fmt::format("{}", method->max_iterations));
+      add("order", to_string(method->order));
+    }
+  }
   add("computed on", job.backend);
   add("precision", to_string(options.precision));
   add("seconds to solve", fmt::format("{:.3f}", take.solve_seconds));

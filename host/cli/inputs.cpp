@@ -42,12 +42,17 @@ std::vector<fs::path> recordings_in(const fs::path& folder) {
 }
 
 // The solvers refuse such samples, too, but know neither the file nor the frame in it.
-void require_solvable(const Clip& clip, const FrameRange& frames, const fs::path& file) {
+void require_solvable(const Clip& clip, const FrameRange& frames, const fs::path& file,
+                      const InputNeeds& needs) {
+  if (!needs.frame_rate_for.empty() && !(clip.frame_rate > 0))
+    throw FileError(file, fmt::format("states no frame rate, which {} needs; give --rate HZ",
+                                      needs.frame_rate_for));
   if (clip.samples.size() == 0) throw FileError(file, "holds no samples");
   for (Index f = 0; f < clip.frames(); ++f)
     for (Index c = 0; c < clip.samples.cols(); ++c) {
       const double sample = clip.samples(f, c);
       if (std::abs(sample) <= largest_entry) continue;
+      if (!needs.every_sample && std::isnan(sample)) continue;
       throw FileError(
           file, fmt::format("frame {}, column {} is {}; {}", frames.first.value_or(0) + f,
                             clip.columns[static_cast<std::size_t>(c)], sample,
@@ -114,9 +119,9 @@ std::vector<fs::path> expand_folders(const std::vector<fs::path>& inputs) {
   return files;
 }
 
-Clip read_solvable(const fs::path& file, const InputOptions& options) {
+Clip read_solvable(const fs::path& file, const InputOptions& options, const InputNeeds& needs) {
   Clip clip = read_input(file, options);
-  require_solvable(clip, options.frames, file);
+  require_solvable(clip, options.frames, file, needs);
   return clip;
 }
 

@@ -41,8 +41,15 @@ Clip read_input(const std::filesystem::path& file, const InputOptions& options);
 /// holds no recording.
 std::vector<std::filesystem::path> expand_folders(const std::vector<std::filesystem::path>& inputs);
 
-/// As read_input(), and throws FileError naming frame and column of a sample that is missing or too
-/// large for the solvers.
-Clip read_solvable(const std::filesystem::path& file, const InputOptions& options);
+/// What a method needs of a recording.
+struct InputNeeds {
+  bool every_sample = true;    ///< takes no NaN
+  std::string frame_rate_for;  ///< the step that needs the frame rate; empty if none does
+};
+
+/// As read_input(), and throws FileError naming frame and column of a sample that is too large for
+/// the solvers or missing where it must not be, and for a recording without the frame rate needed.
+Clip read_solvable(const std::filesystem::path& file, const InputOptions& options,
+                   const InputNeeds& needs = {});
 
 }  // namespace moclean::cli

@@ -19,11 +19,7 @@ Json segmentation_record(const Segmentation& segmentation) {
 }
 
 // lambda is null where it follows from lambda_scale and the size of the segment.
-Json method_record(const DenoiseOptions& options) {
-  const RobustPca& method = options.method;
-  Json record;
-  record["name"] = options.method_name;
-  record["segmentation"] = segmentation_record(options.segmentation);
+void add_robust_pca(Json& record, const RobustPca& method) {
   record["lambda"] = method.lambda > 0 ? Json(method.lambda) : Json(nullptr);
   record["lambda_scale"] = method.lambda_scale;
   record["rho"] = method.rho;
@@ -32,6 +28,19 @@ Json method_record(const DenoiseOptions& options) {
   record["tolerance"] = method.tolerance;
   record["max_iterations"] = method.max_iterations;
   record["order"] = to_string(method.order);
+}
+
+// The name of the only step, else the whole chain; `specification` gives the same run everywhere.
+Json method_record(const DenoiseOptions& options) {
+  const Chain& chain = options.chain;
+  Json record;
+  record["name"] = chain.size() == 1 ? name_of(chain.front()) : to_string(chain);
+  record["specification"] = to_string(chain);
+  const LowRank* method = first_low_rank(chain);
+  if (!method) return record;
+  record["segmentation"] = segmentation_record(method->segmentation);
+  if (const auto* robust_pca = std::get_if<RobustPca>(&method->method))
+    add_robust_pca(record, *robust_pca);
   return record;
 }
 

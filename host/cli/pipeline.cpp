@@ -23,16 +23,22 @@ namespace {
 
 // Copies of a take's samples, at most: read 1, stacked 1, solved 2, unstacked 2 and their padding;
 // with --verify two more while the reference works, and one of a truth. Written they are 2; a
-// report has the noisy take and the truth besides, and the text of the page four times.
+// report has the noisy take and the truth besides, and the text of the page four times. A chain of
+// several steps keeps what it began with.
 constexpr std::uint64_t copies_solving = 7, copies_verifying = 9, copies_of_truth = 1,
-                        copies_writing = 2, copies_reporting = 8;
+                        copies_chained = 2, copies_writing = 2, copies_reporting = 8;
 
 GroupRules rules_of(const Job& job) {
   constexpr Index segments_per_unit = 32;
-  GroupRules rules{.segmentation = job.options.segmentation};
+  const Chain& chain = job.options.chain;
+  const LowRank* method = first_low_rank(chain);
+  GroupRules rules{.segmentation = method ? method->segmentation : Segmentation{.whole = true}};
+  rules.needs = {.every_sample = !accepts_missing(chain),
+                 .frame_rate_for = needs_frame_rate(chain)};
   rules.full_segments = std::max(rules.least_segments, segments_per_unit * job.compute_units);
   rules.copies = job.options.verify ? copies_verifying : copies_solving;
   if (!job.truths.empty() || !job.options.report.empty()) rules.copies += copies_of_truth;
+  if (chain.size() > 1) rules.copies += copies_chained;
   return rules;
 }
 
@@ -54,7 +60,7 @@ class Solver {
  public:
   Solver(const Job& job, Backend& backend, const std::stop_token& stop, const char* task)
       : stop_(stop),
-        denoiser_(job.options.segmentation, job.options.method, backend),
+        denoiser_(job.options.chain, &backend, job.options.jobs),
         line_(task, !job.options.quiet) {}
 
   std::vector<Denoised> solve(const TakeGroup& group, Index expected_segments, bool is_last) {
@@ -76,7 +82,7 @@ class Solver {
 
  private:
   std::stop_token stop_;
-  LowRankDenoiser denoiser_;
+  ChainDenoiser denoiser_;
   ProgressLine line_;
   BusyClock clock_;
   Index finished_ = 0;  // segments of the groups before

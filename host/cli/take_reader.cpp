@@ -77,7 +77,7 @@ TakeReader::Take TakeReader::read(std::size_t index, MemoryShare memory) {
   const BusyClock::Work work(clock_);
   require_room(index, file_bytes_[index]);
   Take take;
-  take.clip = read_solvable(files_[index], options_);
+  take.clip = read_solvable(files_[index], options_, rules_.needs);
   const auto samples = static_cast<std::uint64_t>(take.clip.samples.size()) * sizeof(double);
   require_room(index, rules_.copies * samples);
   memory.resize(rules_.copies * samples);

@@ -32,6 +32,7 @@ struct GroupRules {
   Index full_segments = 64;   ///< what fills this device: a group that has so many ends
   /// Bytes of memory a take needs at most, per byte of its samples: the copies of all stages.
   std::uint64_t copies = 7;
+  InputNeeds needs = {};
 };
 
 /// Reads recordings on threads of its own, in the order of their files and ahead of what is asked

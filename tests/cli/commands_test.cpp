@@ -86,6 +86,34 @@ TEST(Corrupt, SaysHowManyEntriesChanged) {
   EXPECT_THAT(outcome.out, HasSubstr(std::to_string(comparison.changed) + " of 5580 entries"));
 }
 
+TEST(Corrupt, WritesTheMaskOfWhatItTouched) {
+  const TemporaryFolder folder;
+  const Clip clean = synthetic_walk(60);
+  const std::string walk = folder.write("walk.npy", clean);
+
+  const Outcome outcome =
+      run({"corrupt", walk, "-o", folder / "noisy.npy", "--mask", folder / "mask.csv", "--noise",
+           "gap:count=2,length=9", "--seed", "3"});
+
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const Clip mask = read_clip(folder / "mask.csv"), noisy = read_clip(folder / "noisy.npy");
+  EXPECT_EQ(mask.columns, clean.columns);
+  EXPECT_TRUE(((mask.samples.array() == 1) == noisy.samples.array().isNaN()).all());
+  EXPECT_TRUE((mask.samples.array() == 0 || mask.samples.array() == 1).all());
+  EXPECT_GT(mask.samples.sum(), 0);
+}
+
+TEST(Corrupt, RefusesToWriteTheMaskOverTheClip) {
+  const TemporaryFolder folder;
+  const std::string walk = folder.write("walk.npy", synthetic_walk(9));
+
+  const Outcome outcome = run({"corrupt", walk, "-o", folder / "a.csv", "--mask", folder / "a.csv",
+                               "--noise", "gaussian:sd=1"});
+
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("-o and --mask would both write"));
+}
+
 TEST(Corrupt, WrongNoiseIsAUsageError) {
   const TemporaryFolder folder;
   const std::string walk = folder.write("walk.npy", synthetic_walk(60));

@@ -73,10 +73,14 @@ TEST_F(Denoise, RecordHoldsTheWholeRun) {
   EXPECT_EQ(record["version"], MOCLEAN_VERSION);
   EXPECT_THAT(record["device"].get<std::string>(), HasSubstr("opencl"));
   const nlohmann::json& method = record["method"];
-  EXPECT_THAT(keys(method), UnorderedElementsAre("name", "segmentation", "lambda", "lambda_scale",
-                                                 "rho", "mu0_factor", "mu_max_factor", "tolerance",
-                                                 "max_iterations", "order"));
+  EXPECT_THAT(
+      keys(method),
+      UnorderedElementsAre("name", "specification", "segmentation", "lambda", "lambda_scale", "rho",
+                           "mu0_factor", "mu_max_factor", "tolerance", "max_iterations", "order"));
   EXPECT_EQ(method["name"], "slra");
+  EXPECT_EQ(method["specification"],
+            "slra:lambda=0,lambda-scale=1,rho=1.6,tolerance=1e-07,max-iterations=1000,order=ae,"
+            "segments=3");
   EXPECT_EQ(method["segmentation"]["segments"], 3);
   EXPECT_EQ(method["lambda"], nullptr);
   EXPECT_EQ(method["rho"], 1.6);
@@ -272,7 +276,7 @@ INSTANTIATE_TEST_SUITE_P(
     Options, WrongDenoiseOptions,
     ::testing::Values(
         WrongOptions{"Unknown", {"--smooth"}, "--smooth"},
-        WrongOptions{"Method", {"--method", "pca"}, "--method"},
+        WrongOptions{"Method", {"--method", "pca"}, "unknown method 'pca'"},
         WrongOptions{"Order", {"--order", "xy"}, "--order"},
         WrongOptions{"Backend", {"--backend", "cuda"}, "--backend"},
         WrongOptions{"Products", {"--products", "blas"}, "--products"},
@@ -285,6 +289,14 @@ INSTANTIATE_TEST_SUITE_P(
         WrongOptions{"TwoLambdas", {"--lambda", "1", "--lambda-scale", "2"}, "excludes"},
         WrongOptions{"RpcaSegments", {"--method", "rpca", "--segments", "2"}, "--method slra"},
         WrongOptions{"RpcaLength", {"--segment-length", "9", "--method", "rpca"}, "--method slra"},
+        WrongOptions{"MethodKey", {"--method", "hampel:width=3"}, "expected one of window, sigmas"},
+        WrongOptions{"FilterSegments", {"--method", "median", "--segments", "2"}, "--method slra"},
+        WrongOptions{"FilterLambda", {"--method", "median", "--lambda", "2"}, "--method slra and"},
+        WrongOptions{"TsvdTolerance", {"--method", "tsvd", "--tolerance", "1e-3"}, "--method slra"},
+        WrongOptions{"FilterVerify", {"--method", "median", "--verify"}, "needs a matrix method"},
+        WrongOptions{"FilterProfile", {"--method", "median", "--profile"}, "needs a matrix method"},
+        WrongOptions{"TsvdMixed", {"--method", "tsvd", "--precision", "mixed"}, "f64) only"},
+        WrongOptions{"CutOff", {"--method", "butterworth:cutoff=60"}, "half the frame rate"},
         WrongOptions{"Jobs", {"--jobs", "0"}, "--jobs"},
         WrongOptions{"MemoryText", {"--memory-limit", "lots"}, "--memory-limit is 'lots'"},
         WrongOptions{"MemoryZero", {"--memory-limit", "0"}, "--memory-limit is '0'"},

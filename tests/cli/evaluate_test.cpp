@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "cli/program.hpp"
+#include "support/data.hpp"
 #include "support/synthetic_walk.hpp"
 #include "support/tolerance.hpp"
 
@@ -59,6 +60,51 @@ TEST_F(Evaluate, TableNamesEveryJoint) {
   EXPECT_THAT(outcome.out, HasSubstr("FD               1.44338\n"));
   EXPECT_THAT(outcome.out, HasSubstr("\nHip "));
   EXPECT_THAT(outcome.out, HasSubstr("\nHead "));
+}
+
+TEST_F(Evaluate, MaskAndOutliersGiveTheFiguresOfDetection) {
+  Clip mask{.samples = Matrix::Zero(2, 6), .columns = {}, .frame_rate = 0, .unit = ""};
+  mask.columns = {"Hip.x", "Hip.y", "Hip.z", "Head.x", "Head.y", "Head.z"};
+  Clip outliers = mask;
+  mask.samples(0, 0) = mask.samples(1, 1) = 1;
+  outliers.samples(0, 0) = -2;
+  outliers.samples(1, 4) = 0.5;
+
+  const Outcome outcome =
+      run({"evaluate", truth_, estimate_, "--json", "--mask", folder_.write("m.npy", mask),
+           "--outliers", folder_.write("e.npy", outliers)});
+  const nlohmann::json above =
+      run({"evaluate", truth_, estimate_, "--json", "--mask", folder_ / "m.npy", "--outliers",
+           folder_ / "e.npy", "--threshold", "1"})
+          .json();
+
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  const nlohmann::json figures = outcome.json()["figures"];
+  EXPECT_NEAR(figures["rmse_touched"].get<double>(), 3 / std::sqrt(2.0), tolerance::by_hand(4));
+  EXPECT_NEAR(figures["rmse_untouched"].get<double>(), 4 / std::sqrt(10.0), tolerance::by_hand(4));
+  EXPECT_EQ(figures["position"], (3 + 4) / 4.0);
+  EXPECT_EQ(figures["precision"], 0.5);
+  EXPECT_EQ(figures["recall"], 0.5);
+  EXPECT_EQ(above["figures"]["precision"], 1);
+  EXPECT_FALSE(figures.contains("bone_length"));
+}
+
+TEST_F(Evaluate, MeasuresBonesWhereTheTruthHasASkeleton) {
+  const auto take = debian_take("01_01.bvh");
+  MOCLEAN_REQUIRE_FILE(take);
+
+  const nlohmann::json record =
+      run({"evaluate", take.string(), take.string(), "--frames", "0:50", "--json"}).json();
+
+  EXPECT_NEAR(record["figures"]["bone_length"].get<double>(), 0, tolerance::by_hand(1000));
+  EXPECT_EQ(record["figures"]["acceleration"], 0);
+}
+
+TEST_F(Evaluate, OutliersNeedAMask) {
+  const Outcome outcome = run({"evaluate", truth_, estimate_, "--outliers", estimate_});
+
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--mask"));
 }
 
 TEST_F(Evaluate, FramesCutBothFilesOfEqualLength) {

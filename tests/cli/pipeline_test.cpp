@@ -137,7 +137,8 @@ TEST_F(Pipeline, ManyTinyTakesShareOneBatch) {
 
 TEST_F(Pipeline, AGroupEndsWhenTheDeviceIsFull) {
   write_takes(40);
-  options_.segmentation.segments = 10;  // of each take: 64 and more are full
+  options_.chain = {
+      LowRank{.segmentation = {.segments = 10}}};  // of each take: 64 and more are full
 
   const RunReport report = run(backend_);
 
@@ -148,7 +149,7 @@ TEST_F(Pipeline, AGroupEndsWhenTheDeviceIsFull) {
 
 TEST_F(Pipeline, ALargeDeviceLeavesFourGroupsToOverlap) {
   write_takes(40);
-  options_.segmentation.segments = 10;
+  options_.chain = {LowRank{.segmentation = {.segments = 10}}};
   options_.inputs = {folder_ / "takes"};
   Job job{.options = options_, .files = expand_folders(options_.inputs), .plan = {}};
   job.plan = plan_outputs({options_.inputs, job.files, options_.output, {}, {}});
@@ -293,7 +294,7 @@ TEST_F(Pipeline, ReadsNoFurtherAheadThanThereIsMemory) {
 }
 
 TEST_F(Pipeline, ReadsTheNextTakesWhileTheDeviceWorks) {
-  options_.segmentation.length = 1;
+  options_.chain = {LowRank{.segmentation = {.length = 1}}};
   const std::string first = folder_.write("takes/a.npy", test::synthetic_walk(100));
   const std::string pipe = folder_ / "takes/b.csv";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);

@@ -30,7 +30,8 @@ class Denoiser {
   virtual ~Denoiser() = default;
 
   /// Cleans all takes at once; the result of a take does not depend on the others, bit for bit.
-  /// Throws ShapeError naming the take's index, frame and column if a sample is NaN or infinite.
+  /// Throws ShapeError naming the take's index, frame and column if a sample is infinite, or NaN
+  /// where the method needs every sample.
   virtual std::vector<Denoised> denoise(std::span<const Clip> takes,
                                         const Monitor& monitor = {}) = 0;
 };

@@ -18,7 +18,7 @@ struct Group {
   SegmentBatch data;
 };
 
-void require_usable(const Clip& take, std::size_t index) {
+void require_usable(const Clip& take, std::size_t index, bool missing_accepted) {
   if (take.samples.size() == 0)
     throw ShapeError(fmt::format("take {} is empty ({} frames x {} columns)", index, take.frames(),
                                  take.samples.cols()));
@@ -26,12 +26,14 @@ void require_usable(const Clip& take, std::size_t index) {
     throw ShapeError(fmt::format("take {} names {} columns but has {}", index, take.columns.size(),
                                  take.samples.cols()));
   for (Index f = 0; f < take.frames(); ++f)
-    for (Index c = 0; c < take.samples.cols(); ++c)
-      if (!std::isfinite(take.samples(f, c)))
+    for (Index c = 0; c < take.samples.cols(); ++c) {
+      const double sample = take.samples(f, c);
+      if (!std::isfinite(sample) && !(missing_accepted && std::isnan(sample)))
         throw ShapeError(
             fmt::format("take {}: not finite at frame {}, column {} "
                         "(missing samples are not supported by this method)",
                         index, f, take.columns[static_cast<std::size_t>(c)]));
+    }
 }
 
 Group stack(std::span<const Clip> takes, std::vector<std::size_t> members,
@@ -96,7 +98,7 @@ std::vector<Denoised> LowRankDenoiser::denoise(std::span<const Clip> takes,
                                                const Monitor& monitor) {
   std::vector<SegmentPlan> plans;
   for (std::size_t t = 0; t < takes.size(); ++t) {
-    require_usable(takes[t], t);
+    require_usable(takes[t], t, accepts_missing(method_));
     plans.push_back(plan(segmentation_, takes[t].frames()));
   }
   const std::vector<Group> groups = group_by_width(takes, plans);

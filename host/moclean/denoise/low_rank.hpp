@@ -17,8 +17,9 @@ struct Segmentation {
 /// The plan for a take of `frames` frames.
 SegmentPlan plan(const Segmentation& segmentation, Index frames);
 
-/// Segmented low-rank approximation (Peng et al.): cut, split every segment by robust PCA, stitch.
-/// With Segmentation{.whole = true} it is plain RPCA of the take.
+/// A matrix method segment by segment: cut, split every segment, stitch. With robust PCA it is the
+/// segmented low-rank approximation of Peng et al.; with Segmentation{.whole = true} plain RPCA of
+/// the take. NaN is refused unless the method accepts it; the completed clip then has none.
 class LowRankDenoiser final : public Denoiser {
  public:
   /// `backend` is used by denoise() and has to outlive this object.

@@ -1,0 +1,82 @@
+#include "moclean/denoise/chain.hpp"
+
+#include <chrono>
+#include <utility>
+
+#include "moclean/core/error.hpp"
+
+namespace moclean {
+namespace {
+
+Index segments_of(const Step& step, std::span<const Clip> takes) {
+  const auto* low_rank = std::get_if<LowRank>(&step);
+  if (!low_rank) return 0;
+  Index count = 0;
+  for (const Clip& take : takes)
+    count += static_cast<Index>(plan(low_rank->segmentation, take.frames()).size()) - 1;
+  return count;
+}
+
+// What was taken away; 0 where either is missing.
+Clip difference(const Clip& take, const Clip& clean) {
+  Clip outliers = take;
+  const Matrix removed = take.samples - clean.samples;
+  outliers.samples = removed.array().isNaN().select(0, removed);
+  return outliers;
+}
+
+}  // namespace
+
+ChainDenoiser::ChainDenoiser(Chain chain, Backend* backend, int jobs)
+    : chain_(std::move(chain)), backend_(backend), jobs_(jobs) {
+  if (chain_.empty()) throw ArgumentError("a chain needs at least one method");
+  if (!backend && needs_backend(chain_))
+    throw ArgumentError(name_of(Step(*first_low_rank(chain_))) + " needs a backend");
+}
+
+std::vector<Denoised> ChainDenoiser::low_rank_alone(std::span<const Clip> takes,
+                                                    const Monitor& monitor) {
+  const auto& step = std::get<LowRank>(chain_.front());
+  return LowRankDenoiser(step.segmentation, step.method, *backend_).denoise(takes, monitor);
+}
+
+std::vector<Denoised> ChainDenoiser::denoise(std::span<const Clip> takes, const Monitor& monitor) {
+  if (chain_.size() == 1 && needs_backend(chain_)) return low_rank_alone(takes, monitor);
+  Progress all;
+  for (const Step& step : chain_) all.total += segments_of(step, takes);
+  Monitor part{.stop = monitor.stop};
+  if (monitor.report)
+    part.report = [&](const Progress& own) {
+      monitor.report({.finished = all.finished + own.finished, .total = all.total});
+    };
+
+  std::vector<Clip> clips(takes.begin(), takes.end());
+  std::vector<Denoised> results(takes.size());
+  for (const Step& step : chain_) {
+    if (monitor.stop.stop_requested()) throw Cancelled();
+    if (const auto* low_rank = std::get_if<LowRank>(&step)) {
+      auto solved =
+          LowRankDenoiser(low_rank->segmentation, low_rank->method, *backend_).denoise(clips, part);
+      for (std::size_t t = 0; t < clips.size(); ++t) {
+        clips[t] = std::move(solved[t].clip);
+        results[t].solve_seconds += solved[t].solve_seconds;
+        if (results[t].segments.empty()) results[t].segments = std::move(solved[t].segments);
+      }
+      all.finished += segments_of(step, takes);
+      continue;
+    }
+    for (std::size_t t = 0; t < clips.size(); ++t) {
+      const auto begin = std::chrono::steady_clock::now();
+      clips[t] = filtered(clips[t], std::get<Filter>(step), jobs_);
+      results[t].solve_seconds +=
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    }
+  }
+  for (std::size_t t = 0; t < clips.size(); ++t) {
+    results[t].outliers = difference(takes[t], clips[t]);
+    results[t].clip = std::move(clips[t]);
+  }
+  return results;
+}
+
+}  // namespace moclean

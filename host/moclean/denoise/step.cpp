@@ -1,0 +1,149 @@
+#include "moclean/core/error.hpp"
+#include "moclean/denoise/chain.hpp"
+
+namespace moclean {
+namespace {
+
+constexpr std::string_view slra = "slra", rpca = "rpca";
+
+// A method's parameters and those of its segmentation, as one specification has them.
+template <class M>
+struct Segmented {
+  M method = {};
+  std::optional<Index> length = {};
+  std::optional<Index> segments = {};
+
+  static void visit(auto& self, auto& visitor) {
+    M::visit(self.method, visitor);
+    visitor("segment-length", self.length);
+    visitor("segments", self.segments);
+  }
+
+  Segmentation segmentation(const Segmentation& otherwise) const {
+    if (length) return {.length = *length};
+    if (segments) return {.segments = *segments};
+    return otherwise;
+  }
+};
+
+template <class M>
+void check(const Segmented<M>& step) {
+  check(step.method);
+  if (step.length && step.segments)
+    throw ArgumentError("segment-length and segments exclude each other");
+  if ((step.length && *step.length < 1) || (step.segments && *step.segments < 1))
+    throw ArgumentError("segment-length and segments are expected to be at least 1");
+}
+
+template <class M>
+Step read_segmented(const Specification& given, const M& method, const Segmentation& otherwise) {
+  const auto step = read_parameters<Segmented<M>>(given, {.method = method});
+  return LowRank{step.segmentation(otherwise), step.method};
+}
+
+Step read_whole(const Specification& given, const RobustPca& method) {
+  return LowRank{{.whole = true}, read_parameters<RobustPca>(given, method)};
+}
+
+// The matrix methods but robust PCA, which has two names.
+using OtherMethods = std::variant<TruncatedSvd, SingularValueThresholding, MatrixCompletion>;
+
+std::optional<Step> find_method(const Specification& given, const StepDefaults& defaults) {
+  if (given.name() == slra)
+    return read_segmented(given, defaults.robust_pca,
+                          defaults.segmentation.value_or(Segmentation{}));
+  if (given.name() == rpca) return read_whole(given, defaults.robust_pca);
+  const Segmentation whole{.whole = true};
+  std::optional<Step> found;
+  find_alternative<OtherMethods>(given, [&]<class M>(const Specification&, const M& method) {
+    found = read_segmented(given, method, defaults.segmentation.value_or(whole));
+    return method;
+  });
+  return found;
+}
+
+Step parse_step(std::string_view text, const StepDefaults& defaults) {
+  const Specification given("method", text);
+  if (const auto method = find_method(given, defaults)) return *method;
+  const auto filter =
+      find_alternative<Filter>(given, []<class F>(const Specification& own, const F& defaulted) {
+        return read_parameters(own, defaulted);
+      });
+  if (!filter) given.throw_unknown(step_names());
+  return *filter;
+}
+
+template <class M>
+std::string method_name(const M& method, const Segmentation& segmentation) {
+  if constexpr (std::is_same_v<M, RobustPca>)
+    return std::string(segmentation.whole ? rpca : slra);
+  else
+    return std::string(method.name);
+}
+
+std::string specification_of(const LowRank& step) {
+  return std::visit(
+      [&]<class M>(const M& method) {
+        const Segmentation& cut = step.segmentation;
+        detail::ParameterWriter writer(method_name(method, cut));
+        M::visit(method, writer);
+        if (!cut.whole && cut.segments == 0) writer("segment-length", cut.length);
+        if (!cut.whole && cut.segments > 0) writer("segments", cut.segments);
+        return writer.text();
+      },
+      step.method);
+}
+
+}  // namespace
+
+std::vector<std::string_view> step_names() {
+  std::vector<std::string_view> names = {slra, rpca};
+  for (const std::string_view name : names_of<OtherMethods>()) names.push_back(name);
+  for (const std::string_view name : names_of<Filter>()) names.push_back(name);
+  return names;
+}
+
+Chain parse_chain(std::string_view specification, const StepDefaults& defaults) {
+  Chain chain;
+  for (const std::string_view text : split_chain(specification))
+    chain.push_back(parse_step(text, defaults));
+  return chain;
+}
+
+std::string name_of(const Step& step) {
+  if (const auto* filter = std::get_if<Filter>(&step)) return std::string(name_of(*filter));
+  const auto& low_rank = std::get<LowRank>(step);
+  return std::visit([&](const auto& m) { return method_name(m, low_rank.segmentation); },
+                    low_rank.method);
+}
+
+std::string to_string(const Step& step) {
+  if (const auto* filter = std::get_if<Filter>(&step)) return to_string(*filter);
+  return specification_of(std::get<LowRank>(step));
+}
+
+std::string to_string(const Chain& chain) {
+  std::string text;
+  for (const Step& step : chain) text += (text.empty() ? "" : "+") + to_string(step);
+  return text;
+}
+
+const LowRank* first_low_rank(const Chain& chain) {
+  for (const Step& step : chain)
+    if (const auto* found = std::get_if<LowRank>(&step)) return found;
+  return nullptr;
+}
+
+std::string needs_frame_rate(const Chain& chain) {
+  for (const Step& step : chain)
+    if (const auto* filter = std::get_if<Filter>(&step); filter && needs_frame_rate(*filter))
+      return std::string(name_of(*filter));
+  return {};
+}
+
+bool accepts_missing(const Chain& chain) {
+  const LowRank* method = first_low_rank(chain);
+  return !method || accepts_missing(method->method);
+}
+
+}  // namespace moclean

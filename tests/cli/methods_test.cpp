@@ -1,0 +1,112 @@
+// moclean denoise --method: chains, filters, completion, frame rates and gaps.
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+
+#include "moclean/denoise/chain.hpp"
+#include "moclean/io/read_write.hpp"
+#include "moclean/noise/noise.hpp"
+#include "moclean/solve/reference/reference_backend.hpp"
+
+#include "cli/program.hpp"
+#include "support/matrix.hpp"
+#include "support/synthetic_walk.hpp"
+#include "support/tolerance.hpp"
+
+namespace moclean::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+class Methods : public ::testing::Test {
+ protected:
+  Outcome denoise(const std::string& input, const std::string& method,
+                  const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = {"denoise", input, "-o", output_, "--method", method};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  }
+
+  Matrix expected(const std::string& method) const {
+    ReferenceBackend backend(2);
+    return ChainDenoiser(parse_chain(method), &backend).denoise({&walk_, 1}).at(0).clip.samples;
+  }
+
+  TemporaryFolder folder_;
+  Clip walk_ = corrupt(synthetic_walk(90), GaussianFrames{.fraction = 0.3}, 1).clip;
+  std::string csv_ = folder_.write("walk.csv", walk_);
+  std::string npy_ = folder_.write("rateless.npy", walk_);
+  std::string output_ = folder_ / "clean.npy";
+};
+
+TEST_F(Methods, AChainOfFiltersGivesWhatTheLibraryGives) {
+  const std::string chain = "hampel:window=7,sigmas=3+butterworth:cutoff=10";
+
+  const Outcome outcome = denoise(csv_, chain, {"--json", folder_ / "run.json"});
+
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("90 frames x 93 columns, 0."));
+  EXPECT_TRUE(same_bits(read_clip(output_).samples, expected(chain)));
+  const auto record = nlohmann::json::parse(content(folder_ / "run.json"));
+  EXPECT_EQ(record["device"], "host (filters)");
+  EXPECT_EQ(record["method"]["specification"],
+            "hampel:window=7,sigmas=3+butterworth:cutoff=10,order=4");
+  EXPECT_TRUE(record["inputs"][0]["segments"].empty());
+}
+
+TEST_F(Methods, FiltersOpenNoDevice) {
+  const Outcome outcome =
+      run({"denoise", csv_, "-o", output_, "--method", "median"}, {.device = "no such device"});
+
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+}
+
+TEST_F(Methods, MatrixMethodsAgreeWithTheReference) {
+  for (const char* method : {"tsvd:rank=5", "svt:shrink=hard,segments=2", "hampel+slra+median"}) {
+    const Outcome outcome = denoise(csv_, method, {"--verify"});
+
+    ASSERT_EQ(outcome.exit_code, 0) << method << ": " << outcome.err;
+    EXPECT_LE(relative_difference(read_clip(output_).samples, expected(method)),
+              tolerance::backends_low_rank())
+        << method;
+  }
+}
+
+TEST_F(Methods, OptionsFillInWhatASpecificationLeavesOpen) {
+  const Outcome outcome =
+      denoise(csv_, "median:window=3+slra:rho=1.7", {"--segments", "3", "--lambda-scale", "1.2"});
+
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_LE(
+      relative_difference(read_clip(output_).samples,
+                          expected("median:window=3+slra:rho=1.7,segments=3,lambda-scale=1.2")),
+      tolerance::backends_low_rank());
+}
+
+TEST_F(Methods, AFilterInHertzNeedsTheFrameRate) {
+  const Outcome without = denoise(npy_, "butterworth:cutoff=10");
+  const Outcome with = denoise(npy_, "butterworth:cutoff=10", {"--rate", "120"});
+
+  EXPECT_EQ(without.exit_code, 1);
+  EXPECT_THAT(without.err, HasSubstr("states no frame rate, which butterworth needs; give --rate"));
+  EXPECT_EQ(with.exit_code, 0) << with.err;
+  EXPECT_TRUE(same_bits(read_clip(output_).samples, expected("butterworth:cutoff=10")));
+}
+
+TEST_F(Methods, FiltersKeepGapsAndCompletionFillsThem) {
+  Clip holey = walk_;
+  holey.samples.block(20, 3, 15, 3).setConstant(std::nan(""));
+  const std::string input = folder_.write("holey.csv", holey);
+
+  ASSERT_EQ(denoise(input, "hampel").exit_code, 0);
+  EXPECT_EQ(read_clip(output_).samples.array().isNaN().count(), 45);
+  ASSERT_EQ(denoise(input, "hampel+completion").exit_code, 0);
+  EXPECT_TRUE(read_clip(output_).samples.allFinite());
+  const Outcome refused = denoise(input, "hampel+slra");
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.err, HasSubstr("frame 20, column joint1.x is nan"));
+}
+
+}  // namespace
+}  // namespace moclean::test

@@ -1,0 +1,197 @@
+#include "moclean/denoise/chain.hpp"
+
+#include <limits>
+
+#include <gmock/gmock.h>
+
+#include "moclean/core/error.hpp"
+#include "moclean/metric/metric.hpp"
+#include "moclean/noise/noise.hpp"
+#include "moclean/solve/reference/reference_backend.hpp"
+
+#include "support/matrix.hpp"
+#include "support/synthetic_walk.hpp"
+
+namespace moclean {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+Clip noisy_walk(Index frames) {
+  return corrupt(test::synthetic_walk(frames), GaussianFrames{.fraction = 0.3}, 1).clip;
+}
+
+Denoised run(std::string_view chain, const Clip& take, const Monitor& monitor = {}) {
+  ReferenceBackend backend(2);
+  return ChainDenoiser(parse_chain(chain), &backend, 2).denoise({&take, 1}, monitor).at(0);
+}
+
+void expect_refused(std::string_view chain, const std::string& message) {
+  EXPECT_THAT([&] { parse_chain(chain); }, ThrowsMessage<ArgumentError>(message)) << chain;
+}
+
+TEST(ParseChain, ReadsEveryStep) {
+  const Chain chain = parse_chain("hampel:window=9+slra:segment-length=100,lambda=0.2+butterworth");
+
+  ASSERT_EQ(chain.size(), 3u);
+  EXPECT_EQ(chain[0], Step(Filter(Hampel{.window = 9})));
+  EXPECT_EQ(chain[1], Step(LowRank{{.length = 100}, RobustPca{.lambda = 0.2}}));
+  EXPECT_EQ(chain[2], Step(Filter(Butterworth{})));
+}
+
+TEST(ParseChain, KnowsEveryName) {
+  for (const std::string_view name : step_names())
+    EXPECT_EQ(name_of(parse_chain(name).at(0)), name);
+}
+
+TEST(ParseChain, CutsOnlySlraByDefault) {
+  EXPECT_EQ(parse_chain("slra")[0], Step(LowRank{{.length = 200}, RobustPca{}}));
+  EXPECT_EQ(parse_chain("rpca")[0], Step(LowRank{{.whole = true}, RobustPca{}}));
+  EXPECT_EQ(parse_chain("tsvd")[0], Step(LowRank{{.whole = true}, TruncatedSvd{}}));
+  EXPECT_EQ(parse_chain("svt:segments=3")[0],
+            Step(LowRank{{.segments = 3}, SingularValueThresholding{}}));
+}
+
+TEST(ParseChain, FillsInTheDefaultsOfItsCaller) {
+  const StepDefaults defaults{.robust_pca = {.rho = 1.7},
+                              .segmentation = Segmentation{.length = 50}};
+
+  EXPECT_EQ(parse_chain("slra:lambda=1", defaults)[0],
+            Step(LowRank{{.length = 50}, RobustPca{.lambda = 1, .rho = 1.7}}));
+  EXPECT_EQ(parse_chain("tsvd", defaults)[0], Step(LowRank{{.length = 50}, TruncatedSvd{}}));
+  EXPECT_EQ(parse_chain("rpca", defaults)[0],
+            Step(LowRank{{.whole = true}, RobustPca{.rho = 1.7}}));
+}
+
+TEST(ParseChain, ReadsBackWhatToStringWrites) {
+  for (const std::string_view name : step_names()) {
+    const Chain chain = parse_chain(name);
+    EXPECT_EQ(parse_chain(to_string(chain)), chain) << to_string(chain);
+  }
+  const std::string text = "tsvd:rank=4,segments=3+median:window=5";
+  EXPECT_EQ(to_string(parse_chain(text)), text);
+}
+
+TEST(ParseChain, NamesWhatIsWrongAndWhatWouldBeRight) {
+  expect_refused(
+      "pca",
+      "unknown method 'pca', expected one of slra, rpca, tsvd, svt, completion, "
+      "moving-average, gaussian, median, hampel, butterworth, savitzky-golay, whittaker, "
+      "whittaker-l1, kalman");
+  expect_refused("median+",
+                 "unknown method '', expected one of slra, rpca, tsvd, svt, completion, "
+                 "moving-average, gaussian, median, hampel, butterworth, "
+                 "savitzky-golay, whittaker, whittaker-l1, kalman");
+  expect_refused("hampel:width=7",
+                 "method hampel: unknown key 'width', expected one of window, sigmas");
+  expect_refused("tsvd:rank=0", "rank is 0, expected at least 1");
+  expect_refused("rpca:segments=2",
+                 "method rpca: unknown key 'segments', expected one of lambda, lambda-scale, rho, "
+                 "tolerance, max-iterations, order");
+  expect_refused("slra:segments=2,segment-length=9",
+                 "segment-length and segments exclude each other");
+  expect_refused("svt:segments=0", "segment-length and segments are expected to be at least 1");
+}
+
+TEST(ChainDenoiser, OfOneMatrixMethodIsThatMethod) {
+  const Clip take = noisy_walk(80);
+  ReferenceBackend backend;
+  LowRankDenoiser plain({.length = 40}, RobustPca{}, backend);
+
+  const Denoised expected = plain.denoise({&take, 1}).at(0);
+  const Denoised result = run("slra:segment-length=40", take);
+
+  EXPECT_TRUE(test::same_bits(result.clip.samples, expected.clip.samples));
+  EXPECT_TRUE(test::same_bits(result.outliers.samples, expected.outliers.samples));
+  EXPECT_EQ(result.segments.size(), 2u);
+}
+
+TEST(ChainDenoiser, RunsItsStepsOneAfterTheOther) {
+  const Clip take = noisy_walk(80);
+
+  const Denoised result = run("hampel+tsvd:rank=6+butterworth:cutoff=10", take);
+
+  const Clip first = filtered(take, Hampel{});
+  const Clip second = run("tsvd:rank=6", first).clip;
+  const Clip third = filtered(second, Butterworth{.cutoff = 10});
+  EXPECT_TRUE(test::same_bits(result.clip.samples, third.samples));
+  EXPECT_TRUE(test::same_bits(result.outliers.samples, Matrix(take.samples - third.samples)));
+  ASSERT_EQ(result.segments.size(), 1u);
+  EXPECT_EQ(result.segments[0].outcome.rank, 6);
+}
+
+TEST(ChainDenoiser, OfFiltersNeedsNoBackendAndKeepsGaps) {
+  Clip take = noisy_walk(60);
+  take.samples.block(10, 3, 9, 3).setConstant(nan);
+
+  ChainDenoiser denoiser(parse_chain("hampel+median"), nullptr);
+  const Denoised result = denoiser.denoise({&take, 1}).at(0);
+
+  EXPECT_TRUE(result.segments.empty());
+  EXPECT_TRUE((result.clip.samples.array().isNaN() == take.samples.array().isNaN()).all());
+  EXPECT_TRUE(result.outliers.samples.allFinite());
+  EXPECT_EQ(result.outliers.samples.block(10, 3, 9, 3).norm(), 0);
+}
+
+TEST(ChainDenoiser, CompletesWhatIsMissing) {
+  const Clip walk = test::synthetic_walk(120);
+  const Clip take = corrupt(walk, Gap{.runs = {.count = 3, .length = 20}}, 1).clip;
+
+  const Denoised result = run("completion", take);
+
+  EXPECT_TRUE(result.clip.samples.allFinite());
+  EXPECT_LT(frobenius_distance(walk.samples, result.clip.samples), 0.5);
+  EXPECT_THROW(run("slra", take), ShapeError);
+  EXPECT_THROW(run("median+slra", take), ShapeError);
+  EXPECT_NO_THROW(run("median+completion+slra", take));
+}
+
+TEST(ChainDenoiser, CountsTheSegmentsOfAllItsMethods) {
+  const Clip take = noisy_walk(80);
+  std::vector<Progress> reports;
+
+  run("tsvd:segments=4+median+svt:segments=2", take,
+      {.report = [&](const Progress& p) { reports.push_back(p); }, .stop = {}});
+
+  ASSERT_FALSE(reports.empty());
+  EXPECT_EQ(reports.back().finished, 6);
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    EXPECT_EQ(reports[i].total, 6);
+    if (i > 0) {
+      EXPECT_GT(reports[i].finished, reports[i - 1].finished);
+    }
+  }
+}
+
+TEST(ChainDenoiser, StopsWhenAsked) {
+  std::stop_source stop;
+  stop.request_stop();
+
+  EXPECT_THROW(run("median", noisy_walk(20), {.report = {}, .stop = stop.get_token()}), Cancelled);
+}
+
+TEST(ChainDenoiser, RefusesWhatItCannotRun) {
+  Clip take = noisy_walk(20);
+  take.frame_rate = 0;
+
+  EXPECT_THAT([&] { run("butterworth", take); },
+              ThrowsMessage<ArgumentError>(HasSubstr("butterworth needs the frame rate")));
+  EXPECT_THROW(ChainDenoiser(parse_chain("slra"), nullptr), ArgumentError);
+  EXPECT_THROW(ChainDenoiser(Chain{}, nullptr), ArgumentError);
+}
+
+TEST(Chains, SayWhatTheyNeed) {
+  EXPECT_TRUE(accepts_missing(parse_chain("hampel+median")));
+  EXPECT_TRUE(accepts_missing(parse_chain("hampel+completion+slra")));
+  EXPECT_FALSE(accepts_missing(parse_chain("hampel+slra+completion")));
+  EXPECT_EQ(needs_frame_rate(parse_chain("slra+kalman+butterworth")), "kalman");
+  EXPECT_EQ(needs_frame_rate(parse_chain("slra+median")), "");
+  EXPECT_FALSE(needs_backend(parse_chain("hampel+median")));
+  EXPECT_TRUE(needs_backend(parse_chain("hampel+tsvd")));
+}
+
+}  // namespace
+}  // namespace moclean
