@@ -91,8 +91,12 @@ class Pipeline : public ::testing::Test {
   RunReport run(Backend& backend, const std::stop_token& stop = {}) {
     options_.inputs = {folder_ / "takes"};
     Job job{.options = options_, .files = expand_folders(options_.inputs), .plan = {}};
-    job.plan = plan_outputs(
-        {options_.inputs, job.files, options_.output, options_.outliers, options_.format});
+    job.plan = plan_outputs({.inputs = options_.inputs,
+                             .files = job.files,
+                             .output = options_.output,
+                             .outliers = options_.outliers,
+                             .report = {},
+                             .format = options_.format});
     return run_pipeline(job, backend, stop);
   }
 
@@ -152,7 +156,12 @@ TEST_F(Pipeline, ALargeDeviceLeavesFourGroupsToOverlap) {
   options_.chain = {LowRank{.segmentation = {.segments = 10}}};
   options_.inputs = {folder_ / "takes"};
   Job job{.options = options_, .files = expand_folders(options_.inputs), .plan = {}};
-  job.plan = plan_outputs({options_.inputs, job.files, options_.output, {}, {}});
+  job.plan = plan_outputs({.inputs = options_.inputs,
+                           .files = job.files,
+                           .output = options_.output,
+                           .outliers = {},
+                           .report = {},
+                           .format = {}});
   job.compute_units = 1000;
 
   const RunReport report = run_pipeline(job, backend_);
@@ -311,7 +320,12 @@ TEST_F(Pipeline, ReadsTheNextTakesWhileTheDeviceWorks) {
   };
   options_.inputs = {first, pipe};
   Job job{.options = options_, .files = options_.inputs, .plan = {}};
-  job.plan = plan_outputs({options_.inputs, job.files, options_.output, {}, "npy"});
+  job.plan = plan_outputs({.inputs = options_.inputs,
+                           .files = job.files,
+                           .output = options_.output,
+                           .outliers = {},
+                           .report = {},
+                           .format = "npy"});
 
   run_pipeline(job, backend_);
 
