@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# kernels_compile.sh KERNELS FLAG...: checks every kernel file after the prelude with clang, which
+# kernels_compile.sh KERNELS FLAG...: checks every file with kernels after the prelude with clang, which
 # needs no device. Warnings are errors.
 set -euo pipefail
 kernels=$1
@@ -7,7 +7,7 @@ shift
 
 status=0 count=0
 for kernel in "$kernels"/*.cl; do
-  [[ ${kernel##*/} == prelude.cl ]] && continue
+  grep -q '^kernel ' "$kernel" || continue  # is there to be included
   count=$((count + 1))
   clang-14 -x cl -cl-std=CL1.2 -target spir64 -Xclang -finclude-default-header -fsyntax-only \
     -Wall -Wextra -Werror "$@" -include "$kernels/prelude.cl" "$kernel" ||
