@@ -27,6 +27,15 @@ inline double sum_of_products(Index terms, double magnitude) {
 /// because Householder reductions accumulate one rounding per reflector and column.
 inline double decomposition(Index size) { return 10 * epsilon * static_cast<double>(size); }
 
+/// |b - A x| / (|A| |x| + |b|) of a banded system solved by L D L': each entry takes width + 1
+/// products in the factor and in each substitution, and the factors of a positive definite matrix
+/// are no larger than it is (Higham 2002, theorem 10.3).
+inline double band_backward_error(int width) { return 4 * (width + 1) * epsilon; }
+
+/// Absolute error of the solution, of size one, of a banded system with condition number 65 in
+/// single precision.
+inline double single_precision_bands() { return 65 * 4 * 6e-8; }
+
 /// |GV - V Lambda|_F relative to |G|_F for the batched eigensolvers, orders up to 512: what the
 /// project asks of them. Backward stable solvers stay near n^1/2 epsilon, 5e-15 at that size.
 inline double eigen_residual() { return 1e-13; }
