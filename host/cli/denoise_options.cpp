@@ -68,6 +68,13 @@ void add_segmentation(CLI::App& command, DenoiseOptions& options) {
       ->excludes(length)
       ->type_name("K")
       ->group(method_group);
+  command
+      .add_option("--overlap", options.segment_overlap,
+                  "Frames that neighbouring segments share and that are blended (not rpca)")
+      ->check(CLI::NonNegativeNumber)
+      ->default_str("0")
+      ->type_name("FRAMES")
+      ->group(method_group);
 }
 
 void add_method(CLI::App& command, DenoiseOptions& options) {
@@ -222,18 +229,23 @@ void require_opencl(const DenoiseOptions& options) {
 
 // The options of a method that stands in no step of the chain would have no effect.
 void require_used(const DenoiseOptions& options) {
-  bool robust_pca = false, segmented = false;
+  bool robust_pca = false, segmented = false, overlapping = false;
   for (const Step& step : options.chain) {
     const auto* low_rank = std::get_if<LowRank>(&step);
     if (!low_rank) continue;
     const bool is_robust_pca = std::holds_alternative<RobustPca>(low_rank->method);
     robust_pca = robust_pca || is_robust_pca;
     segmented = segmented || !(is_robust_pca && low_rank->segmentation.whole);
+    overlapping = overlapping || low_rank->segmentation.overlap > 0;
   }
   if (!segmented && (options.segment_length || options.segments))
     throw ArgumentError(
         "rpca and filters take every recording whole; --segment-length and --segments belong to "
         "--method slra, tsvd, svt and completion");
+  if (options.segment_overlap.value_or(0) > 0 && !overlapping)
+    throw ArgumentError(
+        "--overlap is that of segments: it belongs to --method slra, and to tsvd, svt and "
+        "completion with --segment-length or --segments");
   if (!robust_pca && (options.tolerance || options.method != RobustPca{}))
     throw ArgumentError(fmt::format(
         "--lambda, --lambda-scale, --rho, --tolerance, --max-iterations and --order belong to "
@@ -278,7 +290,8 @@ void complete(DenoiseOptions& options) {
   if (mixed && defaults.tolerance < mixed_tolerance)
     throw ArgumentError("--precision mixed reaches a tolerance of 1e-06 at best");
   check(defaults);
-  options.chain = parse_chain(options.method_name, {defaults, segmentation_given(options)});
+  options.chain = parse_chain(options.method_name, {defaults, segmentation_given(options),
+                                                    options.segment_overlap.value_or(0)});
   require_used(options);
   require_device_work(options);
   const LowRank* method = first_low_rank(options.chain);

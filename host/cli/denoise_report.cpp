@@ -18,8 +18,12 @@ std::string frames_text(const FrameRange& range) {
 
 std::string segmentation_text(const Segmentation& segmentation) {
   if (segmentation.whole) return "the whole take";
-  if (segmentation.segments > 0) return fmt::format("{} equal segments", segmentation.segments);
-  return fmt::format("equal segments of about {} frames", segmentation.length);
+  const std::string text =
+      segmentation.segments > 0
+          ? fmt::format("{} equal segments", segmentation.segments)
+          : fmt::format("equal segments of about {} frames", segmentation.length);
+  if (segmentation.overlap == 0) return text;
+  return text + fmt::format(", {} frames shared by neighbours", segmentation.overlap);
 }
 
 std::string lambda_text(const RobustPca& method) {

@@ -14,8 +14,13 @@ namespace {
 
 Json segmentation_record(const Segmentation& segmentation) {
   if (segmentation.whole) return {{"whole", true}};
-  if (segmentation.segments > 0) return {{"segments", segmentation.segments}};
-  return {{"length", segmentation.length}};
+  Json record;
+  if (segmentation.segments > 0)
+    record["segments"] = segmentation.segments;
+  else
+    record["length"] = segmentation.length;
+  record["overlap"] = segmentation.overlap;
+  return record;
 }
 
 // lambda is null where it follows from lambda_scale and the size of the segment.

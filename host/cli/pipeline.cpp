@@ -24,9 +24,16 @@ namespace {
 // Copies of a take's samples, at most: read 1, stacked 1, solved 2, unstacked 2 and their padding;
 // with --verify two more while the reference works, and one of a truth. Written they are 2; a
 // report has the noisy take and the truth besides, and the text of the page four times. A chain of
-// several steps keeps what it began with.
+// several steps keeps what it began with. Segments that overlap are stacked and solved at twice
+// their length at most, as are those of the reference.
 constexpr std::uint64_t copies_solving = 7, copies_verifying = 9, copies_of_truth = 1,
-                        copies_chained = 2, copies_writing = 2, copies_reporting = 8;
+                        copies_chained = 2, copies_overlapping = 4, copies_writing = 2,
+                        copies_reporting = 8;
+
+bool overlaps(const Step& step) {
+  const auto* low_rank = std::get_if<LowRank>(&step);
+  return low_rank && low_rank->segmentation.overlap > 0;
+}
 
 GroupRules rules_of(const Job& job) {
   constexpr Index segments_per_unit = 32;
@@ -38,6 +45,7 @@ GroupRules rules_of(const Job& job) {
   rules.full_segments = std::max(rules.least_segments, segments_per_unit * job.compute_units);
   rules.copies = job.options.verify ? copies_verifying : copies_solving;
   if (!job.truths.empty() || !job.options.report.empty()) rules.copies += copies_of_truth;
+  if (std::ranges::any_of(chain, overlaps)) rules.copies += copies_overlapping;
   if (chain.size() > 1) rules.copies += copies_chained;
   return rules;
 }

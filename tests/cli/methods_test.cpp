@@ -84,6 +84,23 @@ TEST_F(Methods, OptionsFillInWhatASpecificationLeavesOpen) {
       tolerance::backends_low_rank());
 }
 
+TEST_F(Methods, SegmentsOverlapAsTheOptionOrTheKeySays) {
+  const Outcome option =
+      denoise(csv_, "slra",
+              {"--segments", "3", "--overlap", "12", "--verify", "--json", folder_ / "run.json"});
+
+  ASSERT_EQ(option.exit_code, 0) << option.err;
+  const Matrix by_option = read_clip(output_).samples;
+  EXPECT_LE(relative_difference(by_option, expected("slra:segments=3,overlap=12")),
+            tolerance::backends_low_rank());
+  const auto record = nlohmann::json::parse(content(folder_ / "run.json"));
+  EXPECT_EQ(record["method"]["segmentation"], (nlohmann::json{{"segments", 3}, {"overlap", 12}}));
+  EXPECT_EQ(record["inputs"][0]["segments"][1]["first_frame"], 24);
+  EXPECT_EQ(record["inputs"][0]["segments"][1]["frames"], 42);
+  ASSERT_EQ(denoise(csv_, "slra:segments=3,overlap=12").exit_code, 0);
+  EXPECT_TRUE(same_bits(read_clip(output_).samples, by_option));
+}
+
 TEST_F(Methods, AFilterInHertzNeedsTheFrameRate) {
   const Outcome without = denoise(npy_, "butterworth:cutoff=10");
   const Outcome with = denoise(npy_, "butterworth:cutoff=10", {"--rate", "120"});

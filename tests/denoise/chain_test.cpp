@@ -55,6 +55,26 @@ TEST(ParseChain, CutsOnlySlraByDefault) {
             Step(LowRank{{.segments = 3}, SingularValueThresholding{}}));
 }
 
+TEST(ParseChain, ReadsTheOverlapOfSegments) {
+  EXPECT_EQ(parse_chain("slra:overlap=20")[0],
+            Step(LowRank{{.length = 200, .overlap = 20}, RobustPca{}}));
+  EXPECT_EQ(parse_chain("tsvd:rank=4,segments=3,overlap=9")[0],
+            Step(LowRank{{.segments = 3, .overlap = 9}, TruncatedSvd{.rank = 4}}));
+  const std::string text = "tsvd:rank=4,segments=3,overlap=9";
+  EXPECT_EQ(to_string(parse_chain(text)), text);
+  expect_refused("tsvd:overlap=9", "overlap needs segment-length or segments");
+}
+
+TEST(ParseChain, GivesTheDefaultOverlapToMethodsThatCut) {
+  const StepDefaults defaults{.overlap = 12};
+
+  EXPECT_EQ(parse_chain("slra:segments=2", defaults)[0],
+            Step(LowRank{{.segments = 2, .overlap = 12}, RobustPca{}}));
+  EXPECT_EQ(parse_chain("slra:overlap=0", defaults)[0], Step(LowRank{}));
+  EXPECT_EQ(parse_chain("tsvd", defaults)[0], Step(LowRank{{.whole = true}, TruncatedSvd{}}));
+  EXPECT_EQ(parse_chain("rpca", defaults)[0], Step(LowRank{{.whole = true}, RobustPca{}}));
+}
+
 TEST(ParseChain, FillsInTheDefaultsOfItsCaller) {
   const StepDefaults defaults{.robust_pca = {.rho = 1.7},
                               .segmentation = Segmentation{.length = 50}};

@@ -42,6 +42,7 @@ TEST(SegmentationPlan, PrefersWholeThenANumberThenALength) {
   EXPECT_THAT(plan({.segments = 2, .length = 10}, 100), ElementsAre(0, 50, 100));
   EXPECT_THAT(plan({.length = 50}, 100), ElementsAre(0, 50, 100));
   EXPECT_THAT(plan({}, 400), ElementsAre(0, 200, 400));
+  EXPECT_THAT(spans({.length = 50, .overlap = 10}, 100), ElementsAre(Span{0, 55}, Span{45, 100}));
   EXPECT_THROW(plan({.segments = -1}, 100), ArgumentError);
 }
 
@@ -101,11 +102,31 @@ TEST(LowRankDenoiser, GivesTheSameBitsForTakesTogetherAndAlone) {
   }
 }
 
+TEST(LowRankDenoiser, GivesTheSameBitsTogetherAndAloneWithOverlap) {
+  const std::vector<Clip> takes = {noisy_walk(60, 1), noisy_walk(45, 3)};
+  const Segmentation segmentation{.length = 20, .overlap = 8};
+
+  const std::vector<Denoised> together = denoise(takes, segmentation);
+
+  for (std::size_t t = 0; t < takes.size(); ++t)
+    EXPECT_TRUE(test::same_bits(together[t].clip.samples,
+                                denoise({takes[t]}, segmentation).at(0).clip.samples))
+        << t;
+}
+
 TEST(LowRankDenoiser, SharesTheSolveTimeByFrames) {
   const auto results = denoise({noisy_walk(90, 1), noisy_walk(30, 2)}, {.length = 30});
 
   EXPECT_GT(results[1].solve_seconds, 0);
   EXPECT_NEAR(results[0].solve_seconds / results[1].solve_seconds, 3, test::tolerance::by_hand(3));
+}
+
+TEST(LowRankDenoiser, SharesTheSolveTimeByFramesSolved) {
+  const auto results =
+      denoise({noisy_walk(60, 1), noisy_walk(30, 2)}, {.length = 30, .overlap = 10});
+
+  EXPECT_NEAR(results[0].solve_seconds / results[1].solve_seconds, 7.0 / 3,
+              test::tolerance::by_hand(3));
 }
 
 TEST(LowRankDenoiser, CountsProgressOverTakesOfAllWidths) {

@@ -32,14 +32,15 @@ struct StepDefaults {
   /// Of slra (else 200 frames), tsvd, svt and completion (else the take whole); rpca is always
   /// whole.
   std::optional<Segmentation> segmentation = {};
+  Index overlap = 0;  ///< of the segments of every method that cuts the take
 };
 
 /// The names a step may begin with: slra, rpca, tsvd, svt, completion and the filters.
 std::vector<std::string_view> step_names();
 
 /// Reads `hampel:window=7,sigmas=3+butterworth:cutoff=10`. The keys of a matrix method are its
-/// parameters and, but for rpca, segment-length and segments. Throws ArgumentError naming the part
-/// that is wrong and what would be right.
+/// parameters and, but for rpca, segment-length, segments and overlap. Throws ArgumentError naming
+/// the part that is wrong and what would be right.
 Chain parse_chain(std::string_view specification, const StepDefaults& defaults = {});
 
 /// The name of a step, and the specification that gives it whatever the defaults.

@@ -8,7 +8,7 @@
 
 namespace moclean {
 
-/// One segment of a cleaned take.
+/// One segment of a cleaned take; segments that overlap share frames.
 struct DenoisedSegment {
   Index first_frame = 0;
   Index frames = 0;

@@ -37,52 +37,54 @@ void require_usable(const Clip& take, std::size_t index, bool missing_accepted) 
 }
 
 Group stack(std::span<const Clip> takes, std::vector<std::size_t> members,
-            std::span<const SegmentPlan> plans) {
+            std::span<const Spans> cuts) {
   std::vector<Index> first_row = {0};
-  for (const std::size_t t : members) {
-    const Index offset = first_row.back();
-    for (std::size_t s = 1; s < plans[t].size(); ++s) first_row.push_back(offset + plans[t][s]);
-  }
+  for (const std::size_t t : members)
+    for (const Span& span : cuts[t]) first_row.push_back(first_row.back() + span.frames());
   SegmentBatch data(takes[members.front()].samples.cols(), std::move(first_row));
-  Index row = 0;
+  Index segment = 0;
   for (const std::size_t t : members) {
-    data.block(row, takes[t].frames()) = takes[t].samples;
-    row += takes[t].frames();
+    stack_spans(takes[t].samples, cuts[t], data, segment);
+    segment += static_cast<Index>(cuts[t].size());
   }
   return {std::move(members), std::move(data)};
 }
 
 // Takes of equal width together, in increasing width.
-std::vector<Group> group_by_width(std::span<const Clip> takes, std::span<const SegmentPlan> plans) {
+std::vector<Group> group_by_width(std::span<const Clip> takes, std::span<const Spans> cuts) {
   std::map<Index, std::vector<std::size_t>> by_width;
   for (std::size_t t = 0; t < takes.size(); ++t) by_width[takes[t].samples.cols()].push_back(t);
   std::vector<Group> groups;
-  for (auto& [width, members] : by_width) groups.push_back(stack(takes, std::move(members), plans));
+  for (auto& [width, members] : by_width) groups.push_back(stack(takes, std::move(members), cuts));
   return groups;
 }
 
-// The rows of one take out of a batch, named like the take.
-Clip unstack(const SegmentBatch& batch, Index first_row, const Clip& take) {
-  return {.samples = batch.block(first_row, take.frames()),
+// One take out of a batch, named like the take.
+Clip unstack(const SegmentBatch& batch, std::span<const Span> cut, Index first_segment,
+             const Clip& take) {
+  return {.samples = blend_spans(batch, cut, first_segment),
           .columns = take.columns,
           .frame_rate = take.frame_rate,
           .unit = take.unit};
 }
 
 void scatter(const Group& group, const Solution& solution, double seconds,
-             std::span<const Clip> takes, std::span<const SegmentPlan> plans,
+             std::span<const Clip> takes, std::span<const Spans> cuts,
              std::vector<Denoised>& results) {
-  Index row = 0;
+  Index segment = 0;
   auto outcome = solution.segments.begin();
   for (const std::size_t t : group.takes) {
     Denoised& result = results[t];
-    result.clip = unstack(solution.low_rank, row, takes[t]);
-    result.outliers = unstack(solution.sparse, row, takes[t]);
-    for (std::size_t s = 0; s + 1 < plans[t].size(); ++s)
-      result.segments.push_back({plans[t][s], plans[t][s + 1] - plans[t][s], *outcome++});
+    result.clip = unstack(solution.low_rank, cuts[t], segment, takes[t]);
+    result.outliers = unstack(solution.sparse, cuts[t], segment, takes[t]);
+    Index rows = 0;
+    for (const Span& span : cuts[t]) {
+      result.segments.push_back({span.first, span.frames(), *outcome++});
+      rows += span.frames();
+    }
     result.solve_seconds =
-        seconds * static_cast<double>(takes[t].frames()) / static_cast<double>(group.data.rows());
-    row += takes[t].frames();
+        seconds * static_cast<double>(rows) / static_cast<double>(group.data.rows());
+    segment += static_cast<Index>(cuts[t].size());
   }
 }
 
@@ -94,14 +96,18 @@ SegmentPlan plan(const Segmentation& segmentation, Index frames) {
   return segments_of_length(frames, segmentation.length);
 }
 
+Spans spans(const Segmentation& segmentation, Index frames) {
+  return overlapping_spans(plan(segmentation, frames), segmentation.overlap);
+}
+
 std::vector<Denoised> LowRankDenoiser::denoise(std::span<const Clip> takes,
                                                const Monitor& monitor) {
-  std::vector<SegmentPlan> plans;
+  std::vector<Spans> cuts;
   for (std::size_t t = 0; t < takes.size(); ++t) {
     require_usable(takes[t], t, accepts_missing(method_));
-    plans.push_back(plan(segmentation_, takes[t].frames()));
+    cuts.push_back(spans(segmentation_, takes[t].frames()));
   }
-  const std::vector<Group> groups = group_by_width(takes, plans);
+  const std::vector<Group> groups = group_by_width(takes, cuts);
   Progress all;
   for (const Group& group : groups) all.total += group.data.segments();
 
@@ -116,7 +122,7 @@ std::vector<Denoised> LowRankDenoiser::denoise(std::span<const Clip> takes,
     const Clock::time_point begin = Clock::now();
     const Solution solution = backend_.solve(group.data, method_, part);
     const std::chrono::duration<double> seconds = Clock::now() - begin;
-    scatter(group, solution, seconds.count(), takes, plans, results);
+    scatter(group, solution, seconds.count(), takes, cuts, results);
     all.finished += group.data.segments();
   }
   return results;

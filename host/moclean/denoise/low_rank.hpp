@@ -1,15 +1,17 @@
 #pragma once
 
 #include "moclean/denoise/denoiser.hpp"
-#include "moclean/segment/plan.hpp"
+#include "moclean/segment/spans.hpp"
 
 namespace moclean {
 
-/// How a take is cut. Exactly one of the three is meant: whole, a number of segments, or a length.
+/// How a take is cut. Exactly one of the first three is meant: whole, a number of segments, or a
+/// length.
 struct Segmentation {
   bool whole = false;  ///< one segment (rpca)
   Index segments = 0;  ///< > 0: so many equal segments
   Index length = 200;  ///< otherwise: equal segments of about so many frames
+  Index overlap = 0;   ///< frames that neighbours share (overlapping_spans) and that are blended
 
   bool operator==(const Segmentation&) const = default;
 };
@@ -17,9 +19,14 @@ struct Segmentation {
 /// The plan for a take of `frames` frames.
 SegmentPlan plan(const Segmentation& segmentation, Index frames);
 
+/// The segments of that plan with their overlap.
+Spans spans(const Segmentation& segmentation, Index frames);
+
 /// A matrix method segment by segment: cut, split every segment, stitch. With robust PCA it is the
 /// segmented low-rank approximation of Peng et al.; with Segmentation{.whole = true} plain RPCA of
 /// the take. NaN is refused unless the method accepts it; the completed clip then has none.
+/// Segments that overlap are each solved with all their frames; motion and outliers are blended
+/// with the same weights, so that they add up to the take as those of a segment do.
 class LowRankDenoiser final : public Denoiser {
  public:
   /// `backend` is used by denoise() and has to outlive this object.

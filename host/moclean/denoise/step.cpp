@@ -12,17 +12,23 @@ struct Segmented {
   M method = {};
   std::optional<Index> length = {};
   std::optional<Index> segments = {};
+  std::optional<Index> overlap = {};
 
   static void visit(auto& self, auto& visitor) {
     M::visit(self.method, visitor);
     visitor("segment-length", self.length);
     visitor("segments", self.segments);
+    visitor("overlap", self.overlap);
   }
 
-  Segmentation segmentation(const Segmentation& otherwise) const {
-    if (length) return {.length = *length};
-    if (segments) return {.segments = *segments};
-    return otherwise;
+  Segmentation segmentation(const StepDefaults& defaults, const Segmentation& otherwise) const {
+    Segmentation cut = defaults.segmentation.value_or(otherwise);
+    if (length) cut = {.length = *length};
+    if (segments) cut = {.segments = *segments};
+    if (cut.whole && overlap.value_or(0) > 0)
+      throw ArgumentError("overlap needs segment-length or segments");
+    if (!cut.whole) cut.overlap = overlap.value_or(defaults.overlap);
+    return cut;
   }
 };
 
@@ -33,12 +39,15 @@ void check(const Segmented<M>& step) {
     throw ArgumentError("segment-length and segments exclude each other");
   if ((step.length && *step.length < 1) || (step.segments && *step.segments < 1))
     throw ArgumentError("segment-length and segments are expected to be at least 1");
+  if (step.overlap && *step.overlap < 0)
+    throw ArgumentError("overlap is expected to be at least 0");
 }
 
 template <class M>
-Step read_segmented(const Specification& given, const M& method, const Segmentation& otherwise) {
+Step read_segmented(const Specification& given, const M& method, const StepDefaults& defaults,
+                    const Segmentation& otherwise) {
   const auto step = read_parameters<Segmented<M>>(given, {.method = method});
-  return LowRank{step.segmentation(otherwise), step.method};
+  return LowRank{step.segmentation(defaults, otherwise), step.method};
 }
 
 Step read_whole(const Specification& given, const RobustPca& method) {
@@ -50,13 +59,12 @@ using OtherMethods = std::variant<TruncatedSvd, SingularValueThresholding, Matri
 
 std::optional<Step> find_method(const Specification& given, const StepDefaults& defaults) {
   if (given.name() == slra)
-    return read_segmented(given, defaults.robust_pca,
-                          defaults.segmentation.value_or(Segmentation{}));
+    return read_segmented(given, defaults.robust_pca, defaults, Segmentation{});
   if (given.name() == rpca) return read_whole(given, defaults.robust_pca);
   const Segmentation whole{.whole = true};
   std::optional<Step> found;
   find_alternative<OtherMethods>(given, [&]<class M>(const Specification&, const M& method) {
-    found = read_segmented(given, method, defaults.segmentation.value_or(whole));
+    found = read_segmented(given, method, defaults, whole);
     return method;
   });
   return found;
@@ -89,6 +97,7 @@ std::string specification_of(const LowRank& step) {
         M::visit(method, writer);
         if (!cut.whole && cut.segments == 0) writer("segment-length", cut.length);
         if (!cut.whole && cut.segments > 0) writer("segments", cut.segments);
+        if (cut.overlap > 0) writer("overlap", cut.overlap);
         return writer.text();
       },
       step.method);
