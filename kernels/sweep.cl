@@ -11,8 +11,8 @@
 // X, XV and X+ stay in the nearest caches. X+ is formed twice, for its Gram matrix and again at the
 // start of the next iteration: that takes less time than to write and read it.
 // `form` gives X where it is needed as a whole, `shrink` the element-wise steps for an A that is
-// there already, `finish` gives E at the end.
-// Launch: one work-item per block of rows.
+// there already, `finish` gives E at the end. Missing entries are known to `start` and `shrink`
+// only. Launch: one work-item per block of rows.
 
 #include "state.cl"
 #include "tiles.cl"
@@ -249,8 +249,10 @@ kernel void start(global const segment_t* segments,  // [segments]
                   int block_count,
                   global const state_t* states,  // [segments]
                   global const real* data,       // D [rows x pitch] stacked
-                  global real* t,                // Y = dual_scale D, |Y| <= lambda
-                  global real* a) {              // A = 0, order ea only
+                  int with_missing,
+                  global const real* observed,  // 0 where D is missing, and filled; else 1
+                  global real* t,               // Y = dual_scale D, |Y| <= lambda; 0 where missing
+                  global real* a) {             // A = 0, order ea only; D where missing
   const int item = get_global_id(0);
   if (item >= block_count) return;
   const segment_t s = segments[blocks[item].segment];
@@ -259,8 +261,9 @@ kernel void start(global const segment_t* segments,  // [segments]
   const size_t last = (s.first_row + block_end(blocks[item], s)) * s.pitch;
   const real dual_scale = state->dual_scale;
   for (size_t i = first; i < last; i += VW) {
-    store(t + i, load(data + i) * dual_scale);
-    if (state->order_ea) store(a + i, 0);
+    const vreal d = load(data + i), seen = with_missing ? load(observed + i) : (vreal)1;
+    store(t + i, seen * d * dual_scale);
+    if (state->order_ea) store(a + i, d - seen * d);
   }
 }
 
@@ -291,7 +294,9 @@ kernel void shrink(global const segment_t* segments,  // [segments]
                    global const block_t* blocks,      // [block_count]
                    int block_count,
                    global const state_t* states,    // [segments]
-                   global const real* data,         // D [rows x pitch] stacked
+                   global real* data,               // D [rows x pitch] stacked
+                   int with_missing,                // D becomes A where it is missing
+                   global const real* observed,     // 0 where D is missing, else 1
                    global const real* x,            // X
                    global const real* a,            // A
                    global real* t,                  // T -> T, or Y -> Y+
@@ -306,11 +311,20 @@ kernel void shrink(global const segment_t* segments,  // [segments]
   const size_t first = (s.first_row + block_begin(blocks[item], s)) * s.pitch;
   const size_t last = (s.first_row + block_end(blocks[item], s)) * s.pitch;
   sums_t sums = {0, 0};
-  for (size_t i = first; i < last; i += VW)
+  for (size_t i = first; i < last; i += VW) {
+    const vreal known = load(a + i);
+    vreal d = load(data + i), formed = load(x + i);
+    if (with_missing) {  // A weight of 0: Y stays 0, E = D - A is free, which D = A says as well.
+      const vreal seen = load(observed + i);
+      d = seen > 0 ? d : known;
+      formed = seen > 0 ? formed : known;
+      store(data + i, d);
+    }
     if (state->order_ea)
-      update_ea(k, load(a + i), load(data + i), load(x + i), t + i, &sums);
+      update_ea(k, known, d, formed, t + i, &sums);
     else
-      update_ae(k, load(a + i), load(data + i), t + i, &sums);
+      update_ae(k, known, d, t + i, &sums);
+  }
   report(sums, k, s.first_block + blocks[item].block, partial_squares, partial_sparse);
 }
 

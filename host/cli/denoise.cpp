@@ -104,6 +104,11 @@ void print_report(const RunReport& run, const OutputPlan& plan, const BackendRep
   if (backend.profile) fmt::print("\n{}", profile_table(*backend.profile));
 }
 
+void warn_of_unobserved(const std::vector<TakeReport>& takes) {
+  for (const TakeReport& take : takes)
+    if (!take.unobserved.empty()) fmt::print(stderr, "moclean: {}\n", unobserved_line(take));
+}
+
 ExitCode warn_if_not_converged(const std::vector<TakeReport>& takes) {
   ExitCode code = ExitCode::done;
   for (const TakeReport& take : takes) {
@@ -143,6 +148,7 @@ ExitCode run(DenoiseOptions options) {
     opened.report.profile = profile_of(*opened.device, options, report.seconds.solve);
   if (!options.json.empty()) write_json(options.json, json_record(options, opened.report, report));
   if (options.reports()) print_report(report, job.plan, opened.report);
+  warn_of_unobserved(report.takes);
   return warn_if_not_converged(report.takes);
 }
 
@@ -158,10 +164,9 @@ void add_denoise(CLI::App& program, Action& action) {
       "segment did not converge, 130 interrupted.\n\n"
       "The bounds of --verify hold for the default tolerance and are the same for any other;\n"
       "--precision mixed has its own.\n\n"
-      "A chain of filters only runs on the host; missing samples stay missing, and completion "
-      "fills\n"
-      "them. Steps: "
-      "slra rpca tsvd svt completion moving-average gaussian median hampel\n"
+      "A chain of filters only runs on the host, where missing samples stay missing; slra, rpca,\n"
+      "completion and tslra fill them. Steps:\n"
+      "slra rpca tsvd svt completion tslra moving-average gaussian median hampel\n"
       "butterworth savitzky-golay whittaker whittaker-l1 kalman; docs/methods.md has their "
       "keys.\n\n"
       "Example:\n"

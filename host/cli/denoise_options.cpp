@@ -241,10 +241,11 @@ void require_used(const DenoiseOptions& options) {
   if (!segmented && (options.segment_length || options.segments))
     throw ArgumentError(
         "rpca and filters take every recording whole; --segment-length and --segments belong to "
-        "--method slra, tsvd, svt and completion");
+        "--method slra, tslra, tsvd, svt and completion");
   if (options.segment_overlap.value_or(0) > 0 && !overlapping)
     throw ArgumentError(
-        "--overlap is that of segments: it belongs to --method slra, and to tsvd, svt and "
+        "--overlap is that of segments: it belongs to --method slra and tslra, and to tsvd, svt "
+        "and "
         "completion with --segment-length or --segments");
   if (!robust_pca && (options.tolerance || options.method != RobustPca{}))
     throw ArgumentError(fmt::format(

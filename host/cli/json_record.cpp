@@ -82,6 +82,7 @@ Json take_record(const TakeReport& take) {
   record["segments"] = Json::array();
   for (const DenoisedSegment& segment : take.segments)
     record["segments"].push_back(segment_record(segment));
+  if (!take.unobserved.empty()) record["unobserved_columns"] = take.unobserved;
   if (take.truth)
     record["truth"] = {{"file", take.truth->file.string()},
                        {"fd_noisy", take.truth->fd_noisy},

@@ -152,6 +152,7 @@ class Run {
                                .solve_seconds = results[i].solve_seconds,
                                .write_seconds = 0,
                                .segments = results[i].segments,
+                               .unobserved = results[i].unobserved,
                                .verification = {},
                                .truth = compared(group, i, results[i].clip)});
     if (verifier_) verify(group, results, verifier_->solve(group, expected, reader_.at_end()));
@@ -205,7 +206,7 @@ class Run {
     std::string failures;
     for (std::size_t i = 0; i < results.size(); ++i) {
       TakeReport& take = report_.takes[group.first + i];
-      const Matrix difference = results[i].clip.samples - expected[i].clip.samples;
+      const Matrix difference = difference_of(results[i].clip.samples, expected[i].clip.samples);
       const AgreementBounds bounds = agreement_bounds(job_.options);
       take.verification = {agreement(results[i], expected[i]), bounds,
                            difference.cwiseAbs().maxCoeff()};

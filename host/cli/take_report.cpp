@@ -1,6 +1,7 @@
 #include "cli/take_report.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace moclean::cli {
 namespace {
@@ -13,6 +14,11 @@ std::string apart(int difference) {
 
 double TakeReport::frames_per_second() const {
   return solve_seconds > 0 ? static_cast<double>(frames) / solve_seconds : 0;
+}
+
+std::string unobserved_line(const TakeReport& take) {
+  return fmt::format("{}: never observed, left missing: {}", take.file.string(),
+                     fmt::join(take.unobserved, ", "));
 }
 
 std::string agreement_line(const TakeReport& take) {

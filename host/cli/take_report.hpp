@@ -34,6 +34,7 @@ struct TakeReport {
   double solve_seconds = 0;
   double write_seconds = 0;
   std::vector<DenoisedSegment> segments;  ///< first_frame counts from the first frame used
+  std::vector<std::string> unobserved;    ///< columns without a sample, left missing
   std::optional<Verification> verification;
   std::optional<TruthReport> truth;
 
@@ -60,5 +61,8 @@ struct RunReport {
 
 /// What --verify found, in one line that starts with the file's name.
 std::string agreement_line(const TakeReport& take);
+
+/// Which columns were never observed, likewise; the take has some.
+std::string unobserved_line(const TakeReport& take);
 
 }  // namespace moclean::cli

@@ -120,7 +120,7 @@ TEST_F(Methods, FiltersKeepGapsAndCompletionFillsThem) {
   EXPECT_EQ(read_clip(output_).samples.array().isNaN().count(), 45);
   ASSERT_EQ(denoise(input, "hampel+completion").exit_code, 0);
   EXPECT_TRUE(read_clip(output_).samples.allFinite());
-  const Outcome refused = denoise(input, "hampel+slra");
+  const Outcome refused = denoise(input, "hampel+tsvd:rank=5");
   EXPECT_EQ(refused.exit_code, 1);
   EXPECT_THAT(refused.err, HasSubstr("frame 20, column joint1.x is nan"));
 }

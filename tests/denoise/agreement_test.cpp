@@ -92,6 +92,16 @@ TEST(Agreement, MixedPrecisionHasWiderBounds) {
   EXPECT_FALSE(within({.ranks_apart = 4}, bounds));
 }
 
+TEST(Agreement, TakesWhatBothLeaveMissingForEqual) {
+  Matrix left = Matrix::Ones(2, 2);
+  left(1, 1) = std::numeric_limits<double>::quiet_NaN();
+  const Denoised reference = result_of(left, Matrix::Ones(2, 2));
+
+  EXPECT_EQ(agreement(reference, reference).low_rank, 0);
+  EXPECT_TRUE(
+      std::isnan(agreement(result_of(Matrix::Ones(2, 2), Matrix::Ones(2, 2)), reference).low_rank));
+}
+
 TEST(Agreement, IsNeverWithinBoundsWithNaN) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Denoised reference = result_of(Matrix::Ones(2, 2), Matrix::Ones(2, 2));

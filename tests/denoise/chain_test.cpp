@@ -95,14 +95,27 @@ TEST(ParseChain, ReadsBackWhatToStringWrites) {
   EXPECT_EQ(to_string(parse_chain(text)), text);
 }
 
+TEST(ParseChain, CutsTslraIntoSegmentsOf400FramesUnlessTold) {
+  const auto step_of = [](const char* text) {
+    return std::get<LowRank>(parse_chain(text).front());
+  };
+
+  EXPECT_EQ(step_of("tslra").segmentation, (Segmentation{.length = 400}));
+  EXPECT_EQ(step_of("tslra:segments=3,gamma=2").segmentation, (Segmentation{.segments = 3}));
+  EXPECT_EQ(std::get<TemporalRobustPca>(step_of("tslra:segments=3,gamma=2").method).gamma, 2);
+  EXPECT_EQ(to_string(parse_chain("tslra:nu=0.5")),
+            "tslra:gamma=0,nu=0.5,lambda=0,lambda-scale=1,rho=1.1,tolerance=1e-06,"
+            "max-iterations=1000,segment-length=400");
+}
+
 TEST(ParseChain, NamesWhatIsWrongAndWhatWouldBeRight) {
   expect_refused(
       "pca",
-      "unknown method 'pca', expected one of slra, rpca, tsvd, svt, completion, "
+      "unknown method 'pca', expected one of slra, rpca, tsvd, svt, completion, tslra, "
       "moving-average, gaussian, median, hampel, butterworth, savitzky-golay, whittaker, "
       "whittaker-l1, kalman");
   expect_refused("median+",
-                 "unknown method '', expected one of slra, rpca, tsvd, svt, completion, "
+                 "unknown method '', expected one of slra, rpca, tsvd, svt, completion, tslra, "
                  "moving-average, gaussian, median, hampel, butterworth, "
                  "savitzky-golay, whittaker, whittaker-l1, kalman");
   expect_refused("hampel:width=7",
@@ -164,9 +177,12 @@ TEST(ChainDenoiser, CompletesWhatIsMissing) {
 
   EXPECT_TRUE(result.clip.samples.allFinite());
   EXPECT_LT(frobenius_distance(walk.samples, result.clip.samples), 0.5);
-  EXPECT_THROW(run("slra", take), ShapeError);
-  EXPECT_THROW(run("median+slra", take), ShapeError);
+  EXPECT_THROW(run("tsvd", take), ShapeError);
+  EXPECT_THROW(run("median+tsvd", take), ShapeError);
   EXPECT_NO_THROW(run("median+completion+slra", take));
+  const Denoised smooth = run("median+tslra:tolerance=1e-3", take);
+  EXPECT_TRUE(smooth.clip.samples.allFinite());
+  EXPECT_LT(frobenius_distance(walk.samples, smooth.clip.samples), 0.5);
 }
 
 TEST(ChainDenoiser, CountsTheSegmentsOfAllItsMethods) {
@@ -206,7 +222,7 @@ TEST(ChainDenoiser, RefusesWhatItCannotRun) {
 TEST(Chains, SayWhatTheyNeed) {
   EXPECT_TRUE(accepts_missing(parse_chain("hampel+median")));
   EXPECT_TRUE(accepts_missing(parse_chain("hampel+completion+slra")));
-  EXPECT_FALSE(accepts_missing(parse_chain("hampel+slra+completion")));
+  EXPECT_FALSE(accepts_missing(parse_chain("hampel+tsvd+completion")));
   EXPECT_EQ(needs_frame_rate(parse_chain("slra+kalman+butterworth")), "kalman");
   EXPECT_EQ(needs_frame_rate(parse_chain("slra+median")), "");
   EXPECT_FALSE(needs_backend(parse_chain("hampel+median")));

@@ -155,9 +155,34 @@ TEST(LowRankDenoiser, RefusesMissingSamplesByTakeFrameAndColumn) {
   std::vector<Clip> takes = {noisy_walk(30, 1), noisy_walk(30, 2)};
   takes[1].samples(7, 4) = std::numeric_limits<double>::quiet_NaN();
 
-  EXPECT_THAT([&] { denoise(takes, {}); },
+  ReferenceBackend backend;
+  LowRankDenoiser denoiser({}, TruncatedSvd{}, backend);
+
+  EXPECT_THAT([&] { denoiser.denoise(takes); },
               ThrowsMessage<ShapeError>("take 1: not finite at frame 7, column joint1.y (missing "
                                         "samples are not supported by this method)"));
+}
+
+TEST(LowRankDenoiser, LeavesAColumnThatWasNeverObservedMissingAndNamesIt) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  Clip take = noisy_walk(60, 1);
+  take.samples.col(4).setConstant(nan);
+  take.samples.block(10, 9, 8, 3).setConstant(nan);
+  take.samples.block(0, 20, 30, 1).setConstant(nan);  // the whole of the first segment
+  ReferenceBackend backend;
+
+  for (const Method& method :
+       {Method(RobustPca{}), Method(MatrixCompletion{}), Method(TemporalRobustPca{})}) {
+    LowRankDenoiser denoiser({.length = 30}, method, backend);
+    const Denoised result = denoiser.denoise({&take, 1}).at(0);
+
+    EXPECT_THAT(result.unobserved, ElementsAre("joint1.y"));
+    EXPECT_TRUE(result.clip.samples.col(4).array().isNaN().all());
+    EXPECT_EQ(result.clip.samples.array().isNaN().count(), 60);
+    EXPECT_TRUE(result.outliers.samples.allFinite());
+    EXPECT_EQ(result.outliers.samples.col(4).norm(), 0);
+  }
+  EXPECT_THAT(denoise({noisy_walk(60, 1)}, {})[0].unobserved, ElementsAre());
 }
 
 TEST(LowRankDenoiser, RefusesEmptyAndMisnamedTakes) {

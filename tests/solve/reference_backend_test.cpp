@@ -121,7 +121,7 @@ TEST(ReferenceBackend, RefusesSamplesThatAreNotFinite) {
     SegmentBatch data = ragged_batch();
     data.segment(2)(12, 3) = bad;
 
-    EXPECT_THAT([&] { ReferenceBackend(2).solve(data, RobustPca{}); },
+    EXPECT_THAT([&] { ReferenceBackend(2).solve(data, TruncatedSvd{}); },
                 ThrowsMessage<ShapeError>("segment 2: not finite at row 12, column 3 (missing "
                                           "samples are not supported by this method)"));
   }

@@ -10,10 +10,13 @@
 namespace moclean {
 namespace {
 
+// 0 in the place of NaN.
+Matrix present(const Matrix& values) { return values.array().isNaN().select(0, values); }
+
 double relative(const Matrix& tested, const Matrix& reference, double data_norm) {
-  const double difference = (tested - reference).norm();
+  const double difference = difference_of(tested, reference).norm();
   if (difference == 0) return 0;
-  const double norm = reference.norm();
+  const double norm = present(reference).norm();
   return difference / (norm > 0 ? norm : data_norm);
 }
 
@@ -31,11 +34,16 @@ void require_same_shape(const Denoised& tested, const Denoised& reference) {
 
 }  // namespace
 
+Matrix difference_of(const Matrix& tested, const Matrix& reference) {
+  const auto both_missing = tested.array().isNaN() && reference.array().isNaN();
+  return both_missing.select(0, tested - reference);
+}
+
 Agreement agreement(const Denoised& tested, const Denoised& reference) {
   require_same_shape(tested, reference);
   const Matrix& a_ref = reference.clip.samples;
   const Matrix& e_ref = reference.outliers.samples;
-  const double data_norm = (a_ref + e_ref).norm();
+  const double data_norm = present(a_ref + e_ref).norm();
 
   Agreement result;
   result.low_rank = relative(tested.clip.samples, a_ref, data_norm);

@@ -34,6 +34,9 @@ struct AgreementBounds {
 inline constexpr AgreementBounds mixed_agreement_bounds{
     .low_rank = 1e-5, .sparse = 1e-2, .iterations_apart = 1, .ranks_apart = 3};
 
+/// tested - reference, 0 where both are NaN: a column without a sample is left by both.
+Matrix difference_of(const Matrix& tested, const Matrix& reference);
+
 /// Compares a result with that of the reference, all segments of the take together.
 /// Where a part of the reference is zero, the difference is relative to |A_ref + E_ref|_F instead;
 /// 0/0 counts as 0. Throws ShapeError if the shapes or the segments differ.

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "moclean/core/error.hpp"
+#include "moclean/denoise/unobserved.hpp"
 
 namespace moclean {
 namespace {
@@ -74,6 +75,7 @@ std::vector<Denoised> ChainDenoiser::denoise(std::span<const Clip> takes, const 
   }
   for (std::size_t t = 0; t < clips.size(); ++t) {
     results[t].outliers = difference(takes[t], clips[t]);
+    results[t].unobserved = unobserved_columns(takes[t]);
     results[t].clip = std::move(clips[t]);
   }
   return results;

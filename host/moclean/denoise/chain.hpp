@@ -29,13 +29,13 @@ using Chain = std::vector<Step>;
 /// What a specification leaves open.
 struct StepDefaults {
   RobustPca robust_pca = {};  ///< of slra and rpca
-  /// Of slra (else 200 frames), tsvd, svt and completion (else the take whole); rpca is always
-  /// whole.
+  /// Of slra (else 200 frames), tslra (else 400), tsvd, svt and completion (else the take whole);
+  /// rpca is always whole.
   std::optional<Segmentation> segmentation = {};
   Index overlap = 0;  ///< of the segments of every method that cuts the take
 };
 
-/// The names a step may begin with: slra, rpca, tsvd, svt, completion and the filters.
+/// The names a step may begin with: slra, rpca, tsvd, svt, completion, tslra and the filters.
 std::vector<std::string_view> step_names();
 
 /// Reads `hampel:window=7,sigmas=3+butterworth:cutoff=10`. The keys of a matrix method are its

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/denoise/unobserved.hpp"
 
 namespace moclean {
 namespace {
@@ -77,6 +78,7 @@ void scatter(const Group& group, const Solution& solution, double seconds,
     Denoised& result = results[t];
     result.clip = unstack(solution.low_rank, cuts[t], segment, takes[t]);
     result.outliers = unstack(solution.sparse, cuts[t], segment, takes[t]);
+    leave_unobserved(takes[t], result);
     Index rows = 0;
     for (const Span& span : cuts[t]) {
       result.segments.push_back({span.first, span.frames(), *outcome++});

@@ -24,7 +24,8 @@ Spans spans(const Segmentation& segmentation, Index frames);
 
 /// A matrix method segment by segment: cut, split every segment, stitch. With robust PCA it is the
 /// segmented low-rank approximation of Peng et al.; with Segmentation{.whole = true} plain RPCA of
-/// the take. NaN is refused unless the method accepts it; the completed clip then has none.
+/// the take. NaN is refused unless the method accepts it; the completed clip then has none but
+/// in columns without a single sample.
 /// Segments that overlap are each solved with all their frames; motion and outliers are blended
 /// with the same weights, so that they add up to the take as those of a segment do.
 class LowRankDenoiser final : public Denoiser {

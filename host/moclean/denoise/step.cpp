@@ -6,6 +6,12 @@ namespace {
 
 constexpr std::string_view slra = "slra", rpca = "rpca";
 
+// What a method is cut into where nothing says: as measured best, or the take whole.
+template <class M>
+constexpr Segmentation default_segmentation = {.whole = true};
+template <>
+constexpr Segmentation default_segmentation<TemporalRobustPca> = {.length = 400};
+
 // A method's parameters and those of its segmentation, as one specification has them.
 template <class M>
 struct Segmented {
@@ -55,16 +61,16 @@ Step read_whole(const Specification& given, const RobustPca& method) {
 }
 
 // The matrix methods but robust PCA, which has two names.
-using OtherMethods = std::variant<TruncatedSvd, SingularValueThresholding, MatrixCompletion>;
+using OtherMethods =
+    std::variant<TruncatedSvd, SingularValueThresholding, MatrixCompletion, TemporalRobustPca>;
 
 std::optional<Step> find_method(const Specification& given, const StepDefaults& defaults) {
   if (given.name() == slra)
     return read_segmented(given, defaults.robust_pca, defaults, Segmentation{});
   if (given.name() == rpca) return read_whole(given, defaults.robust_pca);
-  const Segmentation whole{.whole = true};
   std::optional<Step> found;
   find_alternative<OtherMethods>(given, [&]<class M>(const Specification&, const M& method) {
-    found = read_segmented(given, method, defaults, whole);
+    found = read_segmented(given, method, defaults, default_segmentation<M>);
     return method;
   });
   return found;

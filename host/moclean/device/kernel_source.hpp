@@ -22,5 +22,6 @@ extern const std::string_view products;
 extern const std::string_view robust_pca;
 extern const std::string_view scale_rows;
 extern const std::string_view sweep;
+extern const std::string_view temporal;
 
 }  // namespace moclean::kernel_source

@@ -21,10 +21,9 @@ void require_entries(const SegmentBatch& data, bool missing_accepted) {
           throw ShapeError(fmt::format(
               "segment {}: {} at row {}, column {} is too large (at most {} in magnitude)", b,
               entry, i, j, largest_entry));
-        throw ShapeError(
-            fmt::format("segment {}: not finite at row {}, column {} "
-                        "(missing samples are not supported by this method)",
-                        b, i, j));
+        throw ShapeError(fmt::format(
+            "segment {}: not finite at row {}, column {}{}", b, i, j,
+            missing_accepted ? "" : " (missing samples are not supported by this method)"));
       }
   }
 }

@@ -10,12 +10,14 @@
 #include "moclean/solve/matrix_completion.hpp"
 #include "moclean/solve/robust_pca.hpp"
 #include "moclean/solve/singular_value_thresholding.hpp"
+#include "moclean/solve/temporal_robust_pca.hpp"
 #include "moclean/solve/truncated_svd.hpp"
 
 namespace moclean {
 
 /// What is computed. A method missing on one backend does not compile (std::visit).
-using Method = std::variant<RobustPca, TruncatedSvd, SingularValueThresholding, MatrixCompletion>;
+using Method = std::variant<RobustPca, TruncatedSvd, SingularValueThresholding, MatrixCompletion,
+                            TemporalRobustPca>;
 
 /// Whether a method takes NaN as "not observed"; the others need every sample.
 bool accepts_missing(const Method& method);
@@ -24,8 +26,9 @@ bool accepts_missing(const Method& method);
 struct SegmentOutcome {
   int iterations = 0;
   int rank = 0;  ///< of A: singular values above the last threshold
-  /// After the last iteration: |D - A - E|_F / |D|_F of robust PCA, |P(D - A)|_F / |P(D)|_F of
-  /// completion; 0 for a zero segment, and for methods of one step.
+  /// After the last iteration, over the observed entries: |D - A - E|_F / |D|_F of robust PCA, of
+  /// tslra the larger of it and |L - S|_F / |D|_F, |D - A|_F / |D|_F of completion; 0 for a zero
+  /// segment, and for methods of one step.
   double residual = 0;
   bool converged = false;
 };

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/solve/missing.hpp"
 
 namespace moclean {
 namespace {
@@ -31,8 +32,8 @@ double CompletionStart::kick(double norm_2) const {
 
 CompletionStart start_completion(const ConstMatrixRef& data, const MatrixCompletion& method) {
   CompletionStart start;
-  start.observed = (!data.array().isNaN()).cast<double>();
-  start.data = data.array().isNaN().select(0, data);
+  start.observed = observed_entries(data);
+  start.data = observed_part(data);
   start.norm = start.data.norm();
   start.tau = method.threshold * start.norm;
   start.delta = method.step * static_cast<double>(data.size()) / start.observed.sum();

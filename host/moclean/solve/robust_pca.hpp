@@ -20,6 +20,8 @@ enum class UpdateOrder {
 /// ends with mu = min(rho mu, mu_max_factor mu_0) and the test |D - A - E|_F <= tolerance |D|_F. A
 /// comparison of two solvers has to fix every one of these: the answer depends on them.
 struct RobustPca {
+  static constexpr bool accepts_missing = true;
+
   double lambda = 0;  ///< weight of |E|_1, > 0; 0 means lambda_scale / sqrt(max(rows, columns))
   double lambda_scale = 1;     ///< > 0; used when lambda is 0
   double rho = 1.5;            ///< growth of mu, > 1

@@ -6,10 +6,12 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/solve/missing.hpp"
 #include "moclean/solve/opencl/concurrent.hpp"
 #include "moclean/solve/opencl/matrix_completion.hpp"
 #include "moclean/solve/opencl/robust_pca.hpp"
 #include "moclean/solve/opencl/spectral.hpp"
+#include "moclean/solve/opencl/temporal_robust_pca.hpp"
 
 namespace moclean {
 namespace {
@@ -57,6 +59,11 @@ class OpenClBackend::Worker {
     if (!completion_) completion_.emplace(device_, tuning_);
     use(*completion_);
   }
+  template <class Use>
+  void with(const TemporalRobustPca&, const Use& use) {
+    if (!temporal_) temporal_.emplace(device_, tuning_);
+    use(*temporal_);
+  }
   template <class Spectral, class Use>
   void with(const Spectral&, const Use& use) {
     if (!spectral_) spectral_.emplace(device_, tuning_);
@@ -79,6 +86,7 @@ class OpenClBackend::Worker {
   RobustPcaSolver robust_pca_;
   std::optional<opencl::SpectralSolver> spectral_;
   std::optional<opencl::MatrixCompletionSolver> completion_;
+  std::optional<opencl::TemporalRobustPcaSolver> temporal_;
 };
 
 OpenClBackend::OpenClBackend(const Device& device, const OpenClOptions& options)
@@ -106,6 +114,7 @@ opencl::SegmentSize OpenClBackend::size_of(const SegmentBatch& data, Index b,
         });
       },
       method);
+  if (accepts_missing(method) && has_missing(data.segment(b))) size.memory += size.stacked;
   const DeviceInfo& device = device_.info();
   if (size.memory > options_.memory_limit || size.stacked > device.max_allocation)
     throw DeviceError(fmt::format(

@@ -10,10 +10,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
+#include "moclean/core/error.hpp"
 #include "moclean/device/kernel_source.hpp"
+#include "moclean/solve/missing.hpp"
 #include "moclean/solve/opencl/robust_pca_work.hpp"
+#include "moclean/solve/opencl/transfer.hpp"
 
 namespace moclean::opencl {
 namespace {
@@ -39,33 +43,6 @@ Defines sweep_defines(const Device& device, NumberType type, const Tuning& tunin
   return defines;
 }
 
-std::span<const double> rows_of(const SegmentBatch& batch, Index first, Index last) {
-  const auto pitch = static_cast<std::size_t>(batch.pitch());
-  const auto begin = static_cast<std::size_t>(batch.first_row(first)) * pitch;
-  const auto end = static_cast<std::size_t>(batch.first_row(last)) * pitch;
-  return batch.storage().subspan(begin, end - begin);
-}
-
-void upload(std::span<const double> values, Buffer<double>& target) { target.write(values); }
-
-void upload(std::span<const double> values, Buffer<float>& target) {
-  target.write(std::vector<float>(values.begin(), values.end()));
-}
-
-void download(const Buffer<double>& source, std::span<double> values) { source.read(values); }
-
-void download(const Buffer<float>& source, std::span<double> values) {
-  std::vector<float> floats(values.size());
-  source.read(floats);
-  std::ranges::copy(floats, values.begin());
-}
-
-std::span<double> rows_of(SegmentBatch& batch, Index first, Index last) {
-  const auto rows = rows_of(std::as_const(batch), first, last);
-  return batch.storage().subspan(static_cast<std::size_t>(rows.data() - batch.storage().data()),
-                                 rows.size());
-}
-
 /// Active segments whose norm is not zero; the others are solved by A = E = 0.
 std::vector<std::int32_t> nonzero_segments(const Batch& batch, const Buffer<double>& frobenius) {
   std::vector<double> norms(static_cast<std::size_t>(batch.segments()));
@@ -74,14 +51,6 @@ std::vector<std::int32_t> nonzero_segments(const Batch& batch, const Buffer<doub
   for (const std::int32_t b : batch.active())
     if (norms[static_cast<std::size_t>(b)] > 0) remaining.push_back(b);
   return remaining;
-}
-
-SegmentOutcome outcome_of(const SegmentState& state) {
-  // A segment of norm zero was never started: no iteration, and solved.
-  return {.iterations = state.iterations,
-          .rank = state.rank,
-          .residual = state.residual,
-          .converged = state.converged != 0 || state.iterations == 0};
 }
 
 }  // namespace
@@ -156,6 +125,13 @@ void RobustPcaSolver<Real>::sum_partial_grams(const Batch& batch, Memory& m, Buf
     sum_grams_(per_row(batch), batch.device_segments(), batch.device_active(), m.partial_grams, g);
 }
 
+// Whether an iteration is one sweep over the rows, or one matrix after the other: by a library, or
+// where entries are missing.
+template <class Real>
+bool RobustPcaSolver<Real>::swept(const Memory& m) const {
+  return products_.path() == ProductPath::own && !m.missing;
+}
+
 // Single precision leaves nothing of X that grading could save.
 template <class Real>
 bool RobustPcaSolver<Real>::graded(double tau) {
@@ -174,18 +150,18 @@ void RobustPcaSolver<Real>::start(const Batch& batch, Memory& m, const RobustPca
   start_state_(per_segment(batch), batch.device_segments(), batch.device_active(),
                batch.active_count(), m.eigenvalues, m.largest, method.lambda, method.lambda_scale,
                method.mu0_factor, method.mu_max_factor, method.rho, cl_int{m.ea},
-               cl_int{!m.ea && !graded(m.tau)}, method.max_iterations, m.keep_below, m.states,
-               m.dual, m.decompose);
+               cl_int{!m.ea && !graded(m.tau) && !m.missing}, method.max_iterations, m.keep_below,
+               m.states, m.dual, m.decompose);
   start_(per_block(batch), batch.device_segments(), batch.device_blocks(), batch.active_blocks(),
-         m.states, m.D, m.T, m.A);
+         m.states, m.D, cl_int{m.missing}, m.missing ? m.observed : m.D, m.T, m.A);
 }
 
 // X where it is needed as a whole, and its Gram matrix where the last sweep has not formed it.
 template <class Real>
 void RobustPcaSolver<Real>::prepare(const Batch& batch, Memory& m) {
-  const bool fused = !mixed && products_.path() == ProductPath::own;
+  const bool fused = !mixed && swept(m);
   const bool first = m.iteration == 0 && m.ea;
-  const bool whole = graded(m.tau) || products_.path() == ProductPath::clblast || (fused && first);
+  const bool whole = graded(m.tau) || !swept(m) || (fused && first);
   if (whole || batch.has_wide())
     form_(per_block(batch), batch.device_segments(), batch.device_blocks(), batch.active_blocks(),
           m.states, cl_int{!whole}, m.D, m.T, m.A, m.E, m.X);
@@ -203,7 +179,7 @@ template <class Real>
 void RobustPcaSolver<Real>::decompose(const Batch& batch, Memory& m, const RobustPca& method) {
   if (!graded(m.tau)) {
     eigen_.values(batch, m.decompose, m.V, m.eigenvalues);
-    threshold(batch, m, eigen_.leaves_columns());
+    threshold(batch, m, swept(m) && eigen_.leaves_columns());
     if (graded(next_tau(m.tau, method)))
       eigen_.all_vectors(batch, m.V, m.Z);
     else
@@ -250,7 +226,7 @@ void RobustPcaSolver<Real>::sweep(const Batch& batch, Memory& m, bool with_gram)
   }
 }
 
-// The same with a product of a library between eigenproblem and sweep.
+// The same with A as a whole between eigenproblem and shrinkage.
 template <class Real>
 void RobustPcaSolver<Real>::apply_and_shrink(const Batch& batch, Memory& m) {
   if constexpr (!mixed) {
@@ -258,7 +234,8 @@ void RobustPcaSolver<Real>::apply_and_shrink(const Batch& batch, Memory& m) {
     products_.apply(batch, m.X, m.W, m.A);
     shrink_.with([&] { return shrink_work(batch, host_copy(m.states), sizeof(Real)); })(
         per_block(batch), batch.device_segments(), batch.device_blocks(), batch.active_blocks(),
-        m.states, m.D, m.X, m.A, m.T, m.partial_squares, m.partial_sparse);
+        m.states, m.D, cl_int{m.missing}, m.missing ? m.observed : m.D, m.X, m.A, m.T,
+        m.partial_squares, m.partial_sparse);
   }
 }
 
@@ -267,7 +244,7 @@ void RobustPcaSolver<Real>::iterate(const Batch& batch, Memory& m, const RobustP
   const double next = next_tau(m.tau, method);
   prepare(batch, m);
   decompose(batch, m, method);
-  if (products_.path() == ProductPath::own)
+  if (swept(m))
     sweep(batch, m, !graded(next));
   else
     apply_and_shrink(batch, m);
@@ -293,7 +270,7 @@ std::vector<std::int32_t> RobustPcaSolver<Real>::retire(Batch& batch, Memory& m,
     const SegmentState& state = m.host_states[static_cast<std::size_t>(b)];
     if (!state.finished)
       remaining.push_back(b);
-    else if (state.keep || products_.path() == ProductPath::clblast)
+    else if (state.keep || !swept(m))
       ++done;
     else
       lost.push_back(b);
@@ -308,9 +285,9 @@ std::vector<std::int32_t> RobustPcaSolver<Real>::retire(Batch& batch, Memory& m,
 template <class Real>
 int RobustPcaSolver<Real>::iterations_until_next_look(const Batch& batch, const Memory& m,
                                                       const RobustPca& method) const {
-  // A product of a library does not leave out what has finished, nor do those of a graded
+  // Products of whole matrices do not leave out what has finished, nor do those of a graded
   // iteration.
-  if (graded(m.tau) || products_.path() == ProductPath::clblast) return 1;
+  if (graded(m.tau) || !swept(m)) return 1;
   if (m.iteration == 0) return 1;  // nothing has been read yet, and the first step may be large
   double least = 1;
   for (const std::int32_t b : batch.active())
@@ -344,15 +321,32 @@ std::vector<std::int32_t> RobustPcaSolver<Real>::run(Batch& batch, Memory& m,
   return lost;
 }
 
+// D, 0 where it is missing, and its norms; returns the segments that have missing entries. Their
+// gaps are filled once the norms are known.
 template <class Real>
-void RobustPcaSolver<Real>::solve(const SegmentBatch& data, Index first, Index last,
-                                  const RobustPca& method, Solution& solution,
-                                  const Finished& finished, const std::stop_token& stop) {
-  Batch batch(device_, data, first, last);
-  Memory m(device_, batch, method, sweep_rows_);
-  upload(rows_of(data, first, last), m.D);
+std::vector<std::int32_t> RobustPcaSolver<Real>::load(const SegmentBatch& data, Index first,
+                                                      Index last, const Batch& batch, Memory& m) {
+  std::vector<std::int32_t> incomplete;
+  for (Index b = first; b < last; ++b)
+    if (has_missing(data.segment(b))) incomplete.push_back(static_cast<std::int32_t>(b - first));
+  if (incomplete.empty()) {
+    upload(stacked_rows(data, first, last), m.D);
+    norms_(batch, m.D, m.frobenius, m.largest);
+    return incomplete;
+  }
+  if (mixed) throw ArgumentError("missing samples need double precision (f64)");
+  upload(data, first, last, incomplete, observed_part, m.D);
   norms_(batch, m.D, m.frobenius, m.largest);
-  const std::vector<std::int32_t> all(batch.active().begin(), batch.active().end());
+  upload(data, first, last, incomplete, filled_along_time, m.D);
+  m.observed = Buffer<Real>(device_, batch.stacked_size());
+  upload(data, first, last, incomplete, observed_entries, m.observed);
+  return incomplete;
+}
+
+// Solves these segments, all of which have missing entries or none.
+template <class Real>
+void RobustPcaSolver<Real>::solve_active(Batch& batch, Memory& m, const RobustPca& method,
+                                         const Finished& finished, const std::stop_token& stop) {
   const auto remaining = nonzero_segments(batch, m.frobenius);
   if (remaining.size() < batch.active().size()) {
     finished(static_cast<Index>(batch.active().size() - remaining.size()));
@@ -360,18 +354,36 @@ void RobustPcaSolver<Real>::solve(const SegmentBatch& data, Index first, Index l
   }
   m.keep_below = 2 * steepest_fall(method) * method.tolerance;
   const auto lost = run(batch, m, method, finished, stop);
-  if (!lost.empty()) {
-    m.keep_below = std::numeric_limits<double>::infinity();
-    batch.select(lost);
-    run(batch, m, method, finished, stop);
+  if (lost.empty()) return;
+  m.keep_below = std::numeric_limits<double>::infinity();
+  batch.select(lost);
+  run(batch, m, method, finished, stop);
+}
+
+template <class Real>
+void RobustPcaSolver<Real>::solve(const SegmentBatch& data, Index first, Index last,
+                                  const RobustPca& method, Solution& solution,
+                                  const Finished& finished, const std::stop_token& stop) {
+  Batch batch(device_, data, first, last);
+  Memory m(device_, batch, method, sweep_rows_);
+  const std::vector<std::int32_t> all(batch.active().begin(), batch.active().end());
+  const std::vector<std::int32_t> incomplete = load(data, first, last, batch, m);
+  std::vector<std::int32_t> complete;
+  std::ranges::set_difference(all, incomplete, std::back_inserter(complete));
+  if (!incomplete.empty()) batch.select(complete);
+  solve_active(batch, m, method, finished, stop);
+  if (!incomplete.empty()) {
+    m.missing = true;
+    batch.select(incomplete);
+    solve_active(batch, m, method, finished, stop);
   }
   batch.select(all);
   finish_(per_block(batch), batch.device_segments(), batch.device_blocks(), batch.active_blocks(),
           m.states, m.E, m.T);
   eigen_.check(batch);
 
-  download(m.A, rows_of(solution.low_rank, first, last));
-  download(m.T, rows_of(solution.sparse, first, last));
+  download(m.A, stacked_rows(solution.low_rank, first, last));
+  download(m.T, stacked_rows(solution.sparse, first, last));
   m.states.read(m.host_states);
   for (Index b = first; b < last; ++b)
     solution.segments[static_cast<std::size_t>(b)] =

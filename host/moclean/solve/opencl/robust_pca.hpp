@@ -36,6 +36,11 @@ class RobustPcaSolver {
   static constexpr bool mixed = Memory::mixed;
 
   static bool graded(double tau);
+  bool swept(const Memory& m) const;
+  std::vector<std::int32_t> load(const SegmentBatch& data, Index first, Index last,
+                                 const Batch& batch, Memory& m);
+  void solve_active(Batch& batch, Memory& m, const RobustPca& method, const Finished& finished,
+                    const std::stop_token& stop);
   void start(const Batch& batch, Memory& m, const RobustPca& method);
   void prepare(const Batch& batch, Memory& m);
   void gram_of_data(const Batch& batch, Memory& m);

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "moclean/linalg/batch.hpp"
-#include "moclean/solve/robust_pca.hpp"
+#include "moclean/solve/backend.hpp"
 
 namespace moclean::opencl {
 
@@ -27,6 +27,14 @@ struct SegmentState {
   std::int32_t low_rank = 0;
 };
 static_assert(sizeof(SegmentState) == 88);
+
+inline SegmentOutcome outcome_of(const SegmentState& state) {
+  // A segment of norm zero was never started: no iteration, and solved.
+  return {.iterations = state.iterations,
+          .rank = state.rank,
+          .residual = state.residual,
+          .converged = state.converged != 0 || state.iterations == 0};
+}
 
 /// Everything one batch needs in device memory; allocated once, before the first iteration.
 /// T holds what is kept between iterations (kernels/entry.cl), E in the end. V, which is left where
@@ -96,6 +104,10 @@ struct RobustPcaMemory {
   double tau = 0;         // (1/mu) / |D|_2, the same for all segments
   double keep_below = 0;  // residual from which on iterations store A
   int iteration = 0;      // of all segments that have not finished
+  // Whether the active segments have missing entries, of which `observed` tells: X and A are then
+  // formed as wholes, and D is filled with A.
+  bool missing = false;
+  Buffer<Real> observed;
   std::vector<SegmentState> host_states;
 };
 

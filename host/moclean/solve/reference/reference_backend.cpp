@@ -12,6 +12,7 @@
 #include "moclean/solve/reference/matrix_completion.hpp"
 #include "moclean/solve/reference/robust_pca.hpp"
 #include "moclean/solve/reference/spectral.hpp"
+#include "moclean/solve/reference/temporal_robust_pca.hpp"
 
 namespace moclean {
 namespace {

@@ -4,6 +4,8 @@
 //   Y            Lagrange multipliers of D = A + E
 //   mu           penalty of the augmented Lagrangian, grows by rho
 //   lambda       weight of |E|_1
+//   P            1 where D was observed, else 0; a missing entry has weight 0 in |E|_1: Y is 0
+//                there, E is free
 //   |D|_2, |D|_F largest singular value, root of the sum of squares
 //   SVT_tau(X)   U max(sigma - tau, 0) V' for X = U sigma V': singular value thresholding
 //   soft(T, tau) x - tau for x > tau, x + tau for x < -tau, else 0, for every entry x of T
@@ -12,6 +14,7 @@
 #include <algorithm>
 
 #include "moclean/core/error.hpp"
+#include "moclean/solve/missing.hpp"
 #include "moclean/solve/reference/svd.hpp"
 
 namespace moclean::reference {
@@ -20,19 +23,23 @@ namespace {
 using Eigen::MatrixXd;
 
 struct State {
-  MatrixXd D, A, E, Y;
+  MatrixXd D, P, A, E, Y;
   double lambda = 0;
   double mu = 0;
   int rank = 0;  // singular values that survived the last threshold
 };
 
-// Y = D / max(|D|_2, max|D_ij| / lambda), mu = mu0_factor / |D|_2, A = E = 0.
-void start(State& s, const RobustPca& method) {
-  s.A = s.E = MatrixXd::Zero(s.D.rows(), s.D.cols());
+// Y = D / max(|D|_2, max|D_ij| / lambda), mu = mu0_factor / |D|_2, A = E = 0. Of D with its gaps
+// filled along time, except for the largest entry; where D is missing Y = 0 and A is what fills it.
+void start(State& s, const ConstMatrixRef& data, const RobustPca& method) {
+  s.P = observed_entries(data);
+  s.D = filled_along_time(data);
+  s.E = MatrixXd::Zero(s.D.rows(), s.D.cols());
+  s.A = s.D - s.P.cwiseProduct(s.D);
   s.lambda = lambda_of(method, s.D.rows(), s.D.cols());
   const double norm_2 = thin_svd(s.D).sigma(0);
-  const double largest = s.D.cwiseAbs().maxCoeff();
-  s.Y = s.D / std::max(norm_2, largest / s.lambda);
+  const double largest = s.P.cwiseProduct(s.D).cwiseAbs().maxCoeff();
+  s.Y = s.P.cwiseProduct(s.D) / std::max(norm_2, largest / s.lambda);
   s.mu = method.mu0_factor / norm_2;
 }
 
@@ -46,9 +53,9 @@ void update_low_rank(State& s) {
   s.rank = static_cast<int>(r);
 }
 
-// E = soft(D - A + Y/mu, lambda/mu)
+// E = soft(D - A + Y/mu, P lambda/mu)
 void update_sparse(State& s) {
-  const double tau = s.lambda / s.mu;
+  const Eigen::ArrayXXd tau = s.P.array() * (s.lambda / s.mu);
   const MatrixXd T = s.D - s.A + s.Y / s.mu;
   s.E = (T.array() - tau).max(0) + (T.array() + tau).min(0);
 }
@@ -57,14 +64,14 @@ void update_sparse(State& s) {
 
 RobustPcaSolution solve(const ConstMatrixRef& data, const RobustPca& method,
                         const std::stop_token& stop) {
-  State s{.D = data, .A = {}, .E = {}, .Y = {}};
-  const double norm = s.D.norm();
+  const double norm = observed_part(data).norm();
   if (norm == 0) {
     const Matrix zero = Matrix::Zero(data.rows(), data.cols());
     return {zero, zero, zero, {.iterations = 0, .rank = 0, .residual = 0, .converged = true}};
   }
 
-  start(s, method);
+  State s;
+  start(s, data, method);
   const double mu_max = method.mu_max_factor * s.mu;
   SegmentOutcome outcome;
   while (!outcome.converged && outcome.iterations < method.max_iterations) {
@@ -76,7 +83,7 @@ RobustPcaSolution solve(const ConstMatrixRef& data, const RobustPca& method,
       update_sparse(s);
       update_low_rank(s);
     }
-    const MatrixXd R = s.D - s.A - s.E;
+    const MatrixXd R = s.P.cwiseProduct(s.D - s.A - s.E);
     s.Y += s.mu * R;                             // Y = Y + mu (D - A - E)
     s.mu = std::min(method.rho * s.mu, mu_max);  // mu = min(rho mu, mu_max)
     ++outcome.iterations;
@@ -84,7 +91,7 @@ RobustPcaSolution solve(const ConstMatrixRef& data, const RobustPca& method,
     outcome.residual = R.norm() / norm;  // |D - A - E|_F / |D|_F
     outcome.converged = outcome.residual <= method.tolerance;
   }
-  return {s.A, s.E, s.Y, outcome};
+  return {s.A, s.P.cwiseProduct(s.E), s.Y, outcome};
 }
 
 }  // namespace moclean::reference

@@ -19,7 +19,8 @@ struct RobustPcaSolution {
 
 /// Robust PCA of one segment [rows x columns] by inexact augmented Lagrange multipliers, in double,
 /// with the singular value decomposition of the iterate itself. It says what is right: other
-/// backends are compared with it. `data` is finite and `method` passed check(). A segment of norm
+/// backends are compared with it. Entries of `data` are finite, or NaN where
+/// they were not observed, where E is 0; `method` passed check(). A segment of norm
 /// zero is solved by A = E = 0 without an iteration. Throws Cancelled soon after `stop` is
 /// requested.
 RobustPcaSolution solve(const ConstMatrixRef& data, const RobustPca& method,
