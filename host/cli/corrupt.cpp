@@ -33,7 +33,7 @@ Clip mask_of(const Corrupted& noisy) {
 }
 
 ExitCode run(const CorruptOptions& options) {
-  const Noise noise = parse_noise(options.noise);
+  const NoiseChain noise = parse_noise_chain(options.noise);
   require_writable_clip(options.output);
   if (!options.mask.empty()) require_writable_clip(options.mask);
   if (options.mask == options.output)
@@ -56,7 +56,7 @@ ExitCode run(const CorruptOptions& options) {
 void add_corrupt(CLI::App& program, Action& action) {
   CLI::App& command = *program.add_subcommand("corrupt", "Add noise to a recording");
   command.footer(
-      "Noise: NAME:key=value,key=value. docs/noise.md says what each does.\n"
+      "Noise: NAME:key=value,key=value, several joined by +. docs/noise.md says what each does.\n"
       "  gaussian-frames:frames=COUNT,mean=M,sd=S  or fraction=SHARE (Peng et al., equation 7)\n"
       "  gaussian:sd=S                             or snr=DECIBEL\n"
       "  dropout:fraction=SHARE,fill=zero|nan,background=gaussian|none,snr=DECIBEL\n"

@@ -159,5 +159,31 @@ TEST(Corrupt, RepeatsWithTheSeedAndDiffersWithout) {
   EXPECT_FALSE(test::same_bits(first, corrupt(walk, noise, 5).clip.samples));
 }
 
+TEST(NoiseChain, ReadsBackWhatToStringWrites) {
+  const NoiseChain chain = parse_noise_chain("gap:count=2,length=10+gaussian-frames:fraction=1e-1");
+
+  ASSERT_EQ(chain.size(), 2U);
+  EXPECT_EQ(chain[0], Noise(Gap{{.count = 2, .length = 10}}));
+  EXPECT_EQ(parse_noise_chain(to_string(chain)), chain);
+  EXPECT_THAT([] { parse_noise_chain("gap:count=1+"); },
+              ThrowsMessage<ArgumentError>(testing::HasSubstr("unknown noise ''")));
+  EXPECT_THAT([] { corrupt(test::synthetic_walk(5), NoiseChain{}, 1); },
+              ThrowsMessage<ArgumentError>("a chain needs at least one noise"));
+}
+
+TEST(NoiseChain, AddsEachToWhatTheOneBeforeLeft) {
+  const Clip walk = test::synthetic_walk(40);
+  const Gap gap{{.count = 3, .length = 20}};
+
+  const Corrupted gaps = corrupt(walk, gap, 5);
+  const Corrupted both = corrupt(walk, NoiseChain{gap, GaussianFrames{.fraction = 0.5}}, 5);
+
+  const Mask missing = gaps.clip.samples.array().isNaN();
+  EXPECT_TRUE((both.clip.samples.array().isNaN() == missing).all());
+  EXPECT_TRUE((both.touched || !gaps.touched).all());
+  EXPECT_GT((both.touched && !missing).count(), 40 * 93 / 8);
+  EXPECT_TRUE((both.clip.samples.array() == walk.samples.array() || both.touched).all());
+}
+
 }  // namespace
 }  // namespace moclean

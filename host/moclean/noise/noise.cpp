@@ -1,5 +1,6 @@
 #include "moclean/noise/noise.hpp"
 
+#include "moclean/core/error.hpp"
 #include "moclean/core/parameters.hpp"
 
 namespace moclean {
@@ -38,11 +39,30 @@ std::string to_string(const Noise& noise) {
   return std::visit([](const auto& model) { return write(model); }, noise);
 }
 
+NoiseChain parse_noise_chain(std::string_view specification) {
+  NoiseChain chain;
+  for (const std::string_view text : split_chain(specification)) chain.push_back(parse_noise(text));
+  return chain;
+}
+
+std::string to_string(const NoiseChain& chain) {
+  std::string text;
+  for (const Noise& noise : chain) text += (text.empty() ? "" : "+") + to_string(noise);
+  return text;
+}
+
 Corrupted corrupt(const Clip& clip, const Noise& noise, std::uint64_t seed) {
-  Corrupted result{clip, {}};
+  return corrupt(clip, NoiseChain{noise}, seed);
+}
+
+Corrupted corrupt(const Clip& clip, const NoiseChain& chain, std::uint64_t seed) {
+  if (chain.empty()) throw ArgumentError("a chain needs at least one noise");
+  Corrupted result{clip, Mask::Constant(clip.samples.rows(), clip.samples.cols(), false)};
   Random random(seed);
-  result.touched =
-      std::visit([&](const auto& model) { return add_noise(model, random, result.clip); }, noise);
+  for (const Noise& noise : chain) {
+    const auto add = [&](const auto& model) { return add_noise(model, random, result.clip); };
+    result.touched = result.touched || std::visit(add, noise);
+  }
   return result;
 }
 

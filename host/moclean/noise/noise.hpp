@@ -26,6 +26,15 @@ Noise parse_noise(std::string_view specification);
 /// The specification `parse_noise` reads back to the same noise.
 std::string to_string(const Noise& noise);
 
+/// Noises one after the other, each on what the one before left. There is at least one.
+using NoiseChain = std::vector<Noise>;
+
+/// Reads `gap:fraction=0.1+gaussian-frames:fraction=0.3`. Throws as parse_noise().
+NoiseChain parse_noise_chain(std::string_view specification);
+
+/// The specification `parse_noise_chain` reads back to the same noises.
+std::string to_string(const NoiseChain& chain);
+
 /// A noisy clip and what the noise touched: its gross errors, which a method ought to find. Entries
 /// that were NaN count as untouched, and so does what the model calls background (see each).
 struct Corrupted {
@@ -37,5 +46,9 @@ struct Corrupted {
 /// NaN entries stay NaN. Throws ArgumentError if a parameter is out of range or the noise does not
 /// fit the clip (more frames than it has).
 Corrupted corrupt(const Clip& clip, const Noise& noise, std::uint64_t seed);
+
+/// The same for a chain, whose noises share one sequence of random numbers. Touched is what any of
+/// them touched. Throws ArgumentError for an empty chain, too.
+Corrupted corrupt(const Clip& clip, const NoiseChain& chain, std::uint64_t seed);
 
 }  // namespace moclean
