@@ -25,6 +25,7 @@ void add_evaluate(CLI::App& program, Action& action);
 void add_convert(CLI::App& program, Action& action);
 void add_info(CLI::App& program, Action& action);
 void add_devices(CLI::App& program, Action& action);
+void add_experiment(CLI::App& program, Action& action);
 void add_tune(CLI::App& program, Action& action);
 
 }  // namespace moclean::cli

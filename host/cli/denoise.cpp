@@ -5,62 +5,22 @@
 #include <fmt/format.h>
 
 #include "moclean/report/report.hpp"
-#include "moclean/solve/opencl/opencl_backend.hpp"
-#include "moclean/solve/reference/reference_backend.hpp"
 
 #include "cli/backend_report.hpp"
 #include "cli/commands.hpp"
 #include "cli/denoise_options.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/json_record.hpp"
+#include "cli/open_backend.hpp"
 #include "cli/outputs.hpp"
 #include "cli/pipeline.hpp"
 #include "cli/process_memory.hpp"
 #include "cli/truth.hpp"
-#include "cli/tuning_cache.hpp"
 
 namespace moclean::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct OpenedBackend {
-  std::unique_ptr<Device> device;  // has to outlive the backend
-  std::unique_ptr<Backend> backend;
-  BackendReport report;
-};
-
-// What is kept for the device; a file that cannot be used is worth a warning.
-std::optional<Tuning> kept_tuning(const fs::path& file, const DeviceInfo& device) {
-  CachedTuning cached = read_tuning(file, device);
-  if (!cached.problem.empty())
-    fmt::print(stderr, "moclean: ignoring the kept tuning: {}; see moclean tune\n", cached.problem);
-  return cached.tuning;
-}
-
-OpenedBackend open_backend(const DenoiseOptions& options) {
-  if (!needs_backend(options.chain))  // no device is opened for filters
-    return {nullptr, std::make_unique<ReferenceBackend>(options.jobs), {.name = "host (filters)"}};
-  if (options.backend == "reference") {
-    auto reference = std::make_unique<ReferenceBackend>(options.jobs);
-    const std::string name = reference->name();
-    return {nullptr, std::move(reference), {.name = name}};
-  }
-  auto device =
-      std::make_unique<Device>(options.device, options.profile ? Profiling::on : Profiling::off);
-  const fs::path file = options.use_tuning ? tuning_file(device->info()) : fs::path();
-  const std::optional<Tuning> kept = kept_tuning(file, device->info());
-  auto backend = std::make_unique<OpenClBackend>(
-      *device, OpenClOptions{.products = options.products,
-                             .precision = options.precision,
-                             .memory_limit = std::min(device->info().usable_memory(),
-                                                      device_share(options.memory_limit)),
-                             .tuning = kept});
-  BackendReport report{.name = backend->name(),
-                       .tuning = backend->tuning(),
-                       .tuning_file = kept ? file : fs::path()};
-  return {std::move(device), std::move(backend), std::move(report)};
-}
 
 ProfileReport profile_of(const Device& device, const DenoiseOptions& options,
                          double solve_seconds) {
@@ -139,7 +99,8 @@ ExitCode run(DenoiseOptions options) {
   if (!options.truth.empty()) job.truths = truths_of(options.truth, job.files);
   if (!options.json.empty() && options.json != "-") require_writable(options.json);
 
-  OpenedBackend opened = open_backend(options);
+  OpenedBackend opened = open_backend(options, needs_backend(options.chain),
+                                      options.profile ? Profiling::on : Profiling::off);
   job.backend = opened.report.name;
   job.compute_units = opened.device ? opened.device->info().compute_units : options.jobs;
   const RunReport report = run_pipeline(job, *opened.backend, interrupt.token());

@@ -1,22 +1,17 @@
 #include "cli/denoise_options.hpp"
 
 #include <algorithm>
-#include <thread>
 
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
 #include "moclean/solve/opencl/opencl_backend.hpp"
 
-#include "cli/byte_size.hpp"
-#include "cli/process_memory.hpp"
-
 namespace moclean::cli {
 namespace {
 
 constexpr const char* files_group = "Files";
 constexpr const char* method_group = "Method";
-constexpr const char* device_group = "Where it is computed";
 constexpr const char* report_group = "Report";
 
 void add_files(CLI::App& command, DenoiseOptions& options) {
@@ -112,71 +107,12 @@ void add_method(CLI::App& command, DenoiseOptions& options) {
     option->group(method_group);
 }
 
-void add_device(CLI::App& command, DenoiseOptions& options) {
-  command.add_option("--backend", options.backend, "OpenCL device, or the plain reference (Eigen)")
-      ->check(CLI::IsMember({"opencl", "reference"}))
-      ->capture_default_str()
-      ->type_name("BACKEND")
-      ->group(device_group);
-  command
-      .add_option("--device", options.device,
-                  "OpenCL device: cpu, gpu, P:D (see moclean devices), or part of its name; "
-                  "otherwise the best one")
-      ->envname("MOCLEAN_DEVICE")
-      ->type_name("SEL")
-      ->group(device_group);
-}
-
-void add_arithmetic(CLI::App& command, DenoiseOptions& options) {
-  command
-      .add_option_function<std::string>(
-          "--products",
-          [&](const std::string& text) { options.products = parse_product_path(text); },
-          "Matrix products on the OpenCL device: our kernels, or CLBlast; default: those of the "
-          "tuning, else own")
-      ->check(CLI::IsMember({"own", "clblast"}))
-      ->type_name("PATH")
-      ->group(device_group);
-  command
-      .add_option_function<std::string>(
-          "--precision",
-          [&](const std::string& text) { options.precision = parse_precision(text); },
-          "Double precision throughout, or single for the frames and double for the eigenproblems")
-      ->check(CLI::IsMember({"f64", "mixed"}))
-      ->default_str("f64")
-      ->type_name("PRECISION")
-      ->group(device_group);
-  command
-      .add_flag_callback(
-          "--no-tuning", [&] { options.use_tuning = false; },
-          "Do not use what moclean tune has found for the device")
-      ->group(device_group);
-}
-
-void add_resources(CLI::App& command, DenoiseOptions& options) {
-  options.jobs = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-  command
-      .add_option("--jobs", options.jobs,
-                  "Threads for reading, for writing, and for the reference; default: all of the "
-                  "machine")
-      ->check(CLI::PositiveNumber)
-      ->type_name("N")
-      ->group(device_group);
-  command
-      .add_option_function<std::string>(
-          "--memory-limit",
-          [&](const std::string& text) {
-            options.memory_limit = parse_byte_size("--memory-limit", text);
-          },
-          "Memory for recordings and for the batches of the device, which get a quarter of it: a "
-          "number with K, M, G or T; default: a quarter of the machine's")
-      ->type_name("SIZE")
-      ->group(device_group);
+void add_overlap(CLI::App& command, DenoiseOptions& options) {
   command
       .add_flag_callback(
           "--no-overlap", [&] { options.overlap = false; },
           "Read all, then solve all, then write all, in any amount of memory: to measure the three")
-      ->group(device_group);
+      ->group(backend_group);
 }
 
 void add_truth(CLI::App& command, DenoiseOptions& options) {
@@ -223,8 +159,6 @@ void require_opencl(const DenoiseOptions& options) {
   if (options.verify)
     throw ArgumentError("--verify compares with the reference and needs --backend opencl");
   if (options.profile) throw ArgumentError("--profile needs --backend opencl");
-  if (options.precision == Precision::mixed)
-    throw ArgumentError("--precision mixed needs --backend opencl; the reference is double");
 }
 
 // The options of a method that stands in no step of the chain would have no effect.
@@ -274,18 +208,16 @@ void add_denoise_options(CLI::App& command, DenoiseOptions& options) {
   add_files(command, options);
   add_segmentation(command, options);
   add_method(command, options);
-  add_device(command, options);
-  add_arithmetic(command, options);
-  add_resources(command, options);
+  add_backend_options(command, options);
+  add_overlap(command, options);
   add_truth(command, options);
   add_report(command, options);
 }
 
 void complete(DenoiseOptions& options) {
   require_opencl(options);
+  complete_backend(options);
   const bool mixed = options.precision == Precision::mixed;
-  if (mixed && options.products == ProductPath::clblast)
-    throw ArgumentError("--precision mixed works with our own products only, not with clblast");
   RobustPca defaults = options.method;
   defaults.tolerance = options.tolerance.value_or(mixed ? mixed_tolerance : RobustPca{}.tolerance);
   if (mixed && defaults.tolerance < mixed_tolerance)
@@ -299,7 +231,6 @@ void complete(DenoiseOptions& options) {
   options.segmentation = method ? method->segmentation : Segmentation{.whole = true};
   const auto* robust_pca = method ? std::get_if<RobustPca>(&method->method) : nullptr;
   options.method = robust_pca ? *robust_pca : defaults;
-  if (options.memory_limit == 0) options.memory_limit = physical_memory() / 4;
 }
 
 }  // namespace moclean::cli

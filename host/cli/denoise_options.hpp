@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -9,15 +8,14 @@
 #include <CLI/CLI.hpp>
 
 #include "moclean/denoise/chain.hpp"
-#include "moclean/linalg/precision.hpp"
-#include "moclean/linalg/tuning.hpp"
 
+#include "cli/backend_options.hpp"
 #include "cli/inputs.hpp"
 
 namespace moclean::cli {
 
 /// The command line of `moclean denoise`.
-struct DenoiseOptions {
+struct DenoiseOptions : BackendOptions {
   std::vector<std::filesystem::path> inputs;  ///< files and folders
   InputOptions reading;
   std::filesystem::path output;
@@ -33,14 +31,7 @@ struct DenoiseOptions {
   std::optional<double> tolerance;  ///< default: what the precision reaches
   RobustPca method;                 ///< what slra and rpca leave open; tolerance: by complete()
 
-  std::string backend = "opencl";  ///< "opencl" | "reference"
-  std::string device;
-  std::optional<ProductPath> products;  ///< default: those of the tuning
-  Precision precision = Precision::f64;
-  bool use_tuning = true;  ///< what `moclean tune` has found
-  int jobs = 1;
-  std::uint64_t memory_limit = 0;  ///< bytes; set by complete() where it is not given
-  bool overlap = true;             ///< of reading, solving and writing
+  bool overlap = true;  ///< of reading, solving and writing
 
   std::filesystem::path report;  ///< HTML; empty: none
   std::filesystem::path truth;   ///< file, or folder of files named like the inputs; empty: none

@@ -40,6 +40,7 @@ ExitCode run_program(int count, char** arguments) {
   add_convert(program, action);
   add_info(program, action);
   add_devices(program, action);
+  add_experiment(program, action);
   add_tune(program, action);
 
   try {

@@ -14,8 +14,8 @@ enum class ProgressTotal { exact, estimated };
 /// a terminal. The destructor clears it.
 class ProgressLine {
  public:
-  /// `task` starts the line, e.g. "solving".
-  ProgressLine(std::string task, bool wanted);
+  /// `task` starts the line, e.g. "solving"; `unit` is what is counted.
+  ProgressLine(std::string task, bool wanted, std::string unit = "segments");
   ~ProgressLine();
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
@@ -27,6 +27,7 @@ class ProgressLine {
   using Clock = std::chrono::steady_clock;
 
   std::string task_;
+  std::string unit_;
   bool visible_;
   Clock::time_point begin_ = Clock::now();
   Clock::time_point shown_ = {};
@@ -35,6 +36,7 @@ class ProgressLine {
 /// The text of the line, for instance `solving: 12 of 140 segments, 35.0 segments/s, 4 s left`.
 /// Rate and time left are absent until a segment has finished; an estimated total is `about 140`.
 std::string progress_text(const std::string& task, const Progress& progress, double seconds,
-                          ProgressTotal total = ProgressTotal::exact);
+                          ProgressTotal total = ProgressTotal::exact,
+                          const std::string& unit = "segments");
 
 }  // namespace moclean::cli

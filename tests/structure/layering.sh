@@ -20,6 +20,7 @@ declare -A may_include=(
   [moclean/solve/reference]='moclean/core moclean/solve'
   [moclean/solve/opencl]='moclean/core moclean/device moclean/linalg moclean/solve'
   [moclean/denoise]='moclean/core moclean/motion moclean/segment moclean/filter moclean/solve'
+  [moclean/experiment]='moclean/core moclean/motion moclean/io moclean/noise moclean/metric moclean/denoise moclean/solve'
   [moclean/report]='moclean/core moclean/motion moclean/metric moclean/denoise'
   [cli]='*'
   [python]='*'
@@ -40,6 +41,7 @@ may_catch=(
   'moclean/device/opencl.hpp: turns cl::Error into DeviceError'
   'moclean/device/kernel.cpp: turns a failed build into a DeviceError that holds the log'
   'moclean/device/device.cpp: an ICD without platforms or devices throws; that is an empty list'
+  'moclean/experiment/grid_config.cpp: gives the error of a specification its file and line'
   'moclean/solve/reference/reference_backend.cpp: carries an exception from a thread to the caller'
   'moclean/solve/opencl/concurrent.cpp: carries the first exception of its threads to the caller'
 )

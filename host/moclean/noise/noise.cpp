@@ -47,7 +47,10 @@ NoiseChain parse_noise_chain(std::string_view specification) {
 
 std::string to_string(const NoiseChain& chain) {
   std::string text;
-  for (const Noise& noise : chain) text += (text.empty() ? "" : "+") + to_string(noise);
+  for (const Noise& noise : chain) {
+    if (!text.empty()) text += '+';
+    text += to_string(noise);
+  }
   return text;
 }
 

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "moclean/linalg/precision.hpp"
+#include "moclean/linalg/tuning.hpp"
+
+namespace moclean::cli {
+
+/// Where and in how much memory a command computes.
+struct BackendOptions {
+  std::string backend = "opencl";  ///< "opencl" | "reference"
+  std::string device;
+  std::optional<ProductPath> products;  ///< default: those of the tuning
+  Precision precision = Precision::f64;
+  bool use_tuning = true;  ///< what `moclean tune` has found
+  int jobs = 1;
+  std::uint64_t memory_limit = 0;  ///< bytes; set by complete_backend() where it is not given
+};
+
+/// The group of these options in a command's help.
+inline constexpr const char* backend_group = "Where it is computed";
+
+/// Declares --backend, --device, --products, --precision, --no-tuning, --jobs and --memory-limit.
+void add_backend_options(CLI::App& command, BackendOptions& options);
+
+/// Finishes what the parser cannot express. Throws ArgumentError for options that do not go
+/// together.
+void complete_backend(BackendOptions& options);
+
+}  // namespace moclean::cli

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace moclean {
+
+/// A text file that grows by whole lines and survives being cut off at any byte: a last line
+/// without its line end is no line. Meant for results worth keeping when a run is killed; it is
+/// flushed to the system after every append, not to the disk.
+class LineLog {
+ public:
+  /// Reads the lines there are, removes what a killed writer left of a line, and opens the file for
+  /// more; makes it if it does not exist. Throws FileError if it cannot be read or written.
+  explicit LineLog(std::filesystem::path file);
+
+  const std::filesystem::path& file() const { return file_; }
+
+  /// The lines that were there, without their ends.
+  const std::vector<std::string>& found() const { return found_; }
+
+  /// Appends text and a line end; the text holds none. Throws FileError, e.g. when the disk is
+  /// full.
+  void append(std::string_view line);
+
+ private:
+  std::filesystem::path file_;
+  std::vector<std::string> found_;
+  std::ofstream stream_;
+};
+
+}  // namespace moclean

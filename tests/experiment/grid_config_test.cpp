@@ -1,0 +1,153 @@
+#include "moclean/experiment/grid_config.hpp"
+
+#include <gmock/gmock.h>
+
+#include "moclean/core/error.hpp"
+#include "moclean/io/read_write.hpp"
+
+#include "io/temporary_folder.hpp"
+#include "support/synthetic_walk.hpp"
+
+namespace moclean::test {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+const char* const whole = R"(seeds = [3, 1]
+columns_exclude = ["hand"]
+
+[[take]]
+file = "walk.npy"
+frames = "2:8"
+rate = 60
+columns_exclude = ["Toe"]
+
+[[take]]
+file = "${PLACE:-nowhere}/run.npy"
+label = "run"
+optional = true
+
+[[noise]]
+spec = "gap:count=1,length=3+gaussian-frames:fraction=0.5"
+label = "both"
+
+[[method]]
+spec = "none"
+
+[[method]]
+spec = "hampel:window=5+slra:rho=1.7"
+label = "chain"
+)";
+
+class GridFile : public ::testing::Test {
+ protected:
+  GridConfig read(const std::string& text, const Environment& environment = {}) const {
+    return read_grid(folder_.file("grid.toml", text), {}, environment);
+  }
+
+  // The message, from the line number on.
+  void expect_refused(const std::string& text, const std::string& message) const {
+    EXPECT_THAT([&] { read(text); }, ThrowsMessage<FileError>(HasSubstr("grid.toml:" + message)))
+        << text;
+  }
+
+  // `whole` with one part replaced.
+  static std::string with(const std::string& part, const std::string& other) {
+    std::string text = whole;
+    return text.replace(text.find(part), part.size(), other);
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(GridFile, IsReadWithEveryKey) {
+  const GridConfig config = read(whole);
+
+  EXPECT_THAT(config.seeds, ElementsAre(3, 1));
+  ASSERT_EQ(config.takes.size(), 2U);
+  EXPECT_EQ(config.takes[0].file, folder_.path() / "walk.npy");
+  EXPECT_EQ(config.takes[0].label, "walk");
+  EXPECT_EQ(config.takes[0].frames, (FrameSpan{2, 8}));
+  EXPECT_EQ(config.takes[0].rate, 60);
+  EXPECT_THAT(config.takes[0].excluded, ElementsAre("hand", "Toe"));
+  EXPECT_EQ(config.takes[1].file, folder_.path() / "nowhere/run.npy");
+  EXPECT_TRUE(config.takes[1].optional);
+  EXPECT_THAT(config.takes[1].excluded, ElementsAre("hand"));
+  EXPECT_EQ(config.noises.at(0).label, "both");
+  EXPECT_EQ(config.noises.at(0).noise,
+            (NoiseChain{Gap{{.count = 1, .length = 3}}, GaussianFrames{.fraction = 0.5}}));
+  EXPECT_EQ(config.methods.at(0).label, "none");
+  EXPECT_TRUE(config.methods.at(0).chain.empty());
+  EXPECT_EQ(to_string(config.methods.at(1).chain),
+            to_string(parse_chain("hampel:window=5+slra:rho=1.7")));
+}
+
+TEST_F(GridFile, SeedsMayBeACount) {
+  EXPECT_THAT(read(with("[3, 1]", "3")).seeds, ElementsAre(1, 2, 3));
+}
+
+TEST_F(GridFile, PathsMayNameTheEnvironment) {
+  const Environment environment = [](const char* name) {
+    return std::string(name) == "PLACE" ? "/data" : nullptr;
+  };
+
+  EXPECT_EQ(read(whole, environment).takes[1].file, "/data/run.npy");
+  expect_refused(with("${PLACE:-nowhere}", "${MOCLEAN_NOT_SET}"),
+                 "11: take 2: file: the environment variable MOCLEAN_NOT_SET is not set");
+  expect_refused(with("${PLACE:-nowhere}", "${PLACE"), "11: take 2: file: expected } after ${");
+}
+
+TEST_F(GridFile, ErrorsNameLineKeyAndWhatWasExpected) {
+  expect_refused("seeds = ", "1: ");
+  expect_refused("", "1: seeds: missing, expected how many (at least 1) or a list");
+  expect_refused(with("[3, 1]", "0"), "1: seeds: expected how many (at least 1)");
+  expect_refused(with("[3, 1]", "[1, -1]"), "1: seeds: expected how many (at least 1)");
+  expect_refused(with("[3, 1]", "\"two\""), "1: seeds: expected how many");
+  expect_refused(with("seeds", "sedes"),
+                 "1: sedes: unknown key, expected one of seeds, columns_exclude, take");
+  expect_refused(with("file = \"walk.npy\"", ""), "4: take 1: file: missing, expected a text");
+  expect_refused(with("\"walk.npy\"", "7"), "5: take 1: file: expected a text, found 7");
+  expect_refused(with("2:8", "8:2"), "6: take 1: frames: expected \"A:B\" with A < B");
+  expect_refused(with("rate = 60", "rate = -1"), "7: take 1: rate: expected a number above 0");
+  expect_refused(with("[\"Toe\"]", "\"Toe\""), "8: take 1: columns_exclude: expected a list");
+  expect_refused(with("= true", "= 1"), "13: take 2: optional: expected true or false, found 1");
+  expect_refused(with("optional", "options"), "13: take 2: options: unknown key, expected one of");
+  expect_refused(with("gap:count=1", "gap:cont=1"), "16: noise 1: spec: noise gap: unknown key");
+  expect_refused(with("hampel:window=5", "hample"), "23: method 2: spec: unknown method 'hample'");
+  expect_refused(with("\"chain\"", "\"none\""), "24: method 2: label: 'none' is that of number 1");
+  expect_refused("seeds = 1\ntake = 3\n", "2: take: expected tables, [[take]]");
+  expect_refused("seeds = 1\n[[take]]\nfile = \"a.csv\"\n",
+                 "1: noise: missing, expected at least one [[noise]]");
+}
+
+TEST_F(GridFile, TakesAreReadAndCut) {
+  write_clip(folder_.path() / "walk.npy", synthetic_walk(20));
+  const GridConfig config = read(whole);
+
+  const GridTakes found = read_takes(config);
+
+  ASSERT_EQ(found.takes.size(), 1U);
+  EXPECT_EQ(found.takes[0].clip.samples, synthetic_walk(20).samples.middleRows(2, 6));
+  EXPECT_EQ(found.takes[0].clip.frame_rate, 60);
+  EXPECT_THAT(found.missing, ElementsAre(folder_.path() / "nowhere/run.npy"));
+}
+
+TEST_F(GridFile, TakesThatCannotServeAreRefused) {
+  Clip walk = synthetic_walk(20);
+  walk.samples(3, 5) = std::nan("");
+  write_clip(folder_.path() / "walk.npy", walk);
+
+  EXPECT_THAT([&] { read_takes(read(whole)); },
+              ThrowsMessage<FileError>(HasSubstr("walk.npy: frame 3, column joint1.z is nan")));
+  EXPECT_THAT([&] { read_takes(read(with("2:8", "2:21"))); },
+              ThrowsMessage<FileError>(HasSubstr("grid.toml:4: frames 2:21 do not fit")));
+  EXPECT_THAT([&] { read_takes(read(with("walk.npy", "talk.npy"))); },
+              ThrowsMessage<FileError>(HasSubstr("talk.npy: there is no such file")));
+  EXPECT_THAT([&] { read_takes(read(with("rate = 60", "optional = true"))).takes.clear(); },
+              ThrowsMessage<FileError>(HasSubstr("walk.npy: frame 3")));
+}
+
+}  // namespace
+}  // namespace moclean::test
