@@ -21,7 +21,7 @@ struct Denoised {
   Clip clip;      ///< the motion
   Clip outliers;  ///< what was taken away as gross error, same shape; zero where nothing was
   std::vector<DenoisedSegment> segments;
-  std::vector<std::string> unobserved;  ///< columns without a sample in the take: NaN in the motion
+  std::vector<std::string> unobserved = {};  ///< columns without a sample: NaN in the motion
   double solve_seconds =
       0;  ///< wall time; takes solved together share it by their number of frames
 };
