@@ -125,5 +125,17 @@ TEST_F(Methods, FiltersKeepGapsAndCompletionFillsThem) {
   EXPECT_THAT(refused.err, HasSubstr("frame 20, column joint1.x is nan"));
 }
 
+TEST_F(Methods, NamesColumnsThatWereNeverObserved) {
+  Clip blind = walk_;
+  blind.samples.col(4).setConstant(std::nan(""));
+  const std::string input = folder_.write("blind.csv", blind);
+
+  const Outcome outcome = denoise(input, "slra:tolerance=1e-3");
+
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, HasSubstr(input + ": never observed, left missing: joint1.y"));
+  EXPECT_TRUE(read_clip(output_).samples.col(4).array().isNaN().all());
+}
+
 }  // namespace
 }  // namespace moclean::test
