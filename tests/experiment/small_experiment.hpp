@@ -22,8 +22,7 @@ inline Experiment small_experiment() {
                  {"gaps", parse_noise_chain("gap:count=2,length=10+gaussian:sd=0.1")}},
       .methods = {{"none", {}}},
       .seeds = {1, 4}};
-  for (const char* text :
-       {"median:window=3", "slra:segments=2", "hampel+completion:max-iterations=20"})
+  for (const char* text : {"median:window=3", "slra:segments=2", "tsvd:rank=5"})
     experiment.methods.push_back({text, parse_chain(text)});
   return experiment;
 }

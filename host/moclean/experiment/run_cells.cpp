@@ -94,8 +94,9 @@ class MethodRun {
           .denoise(takes, {.stop = run_.monitor.stop});
     std::vector<Denoised> as_they_are;
     for (const Clip& take : takes) {
-      as_they_are.push_back({.clip = take, .outliers = take, .segments = {}});
-      as_they_are.back().outliers.samples.setZero();
+      Denoised& same = as_they_are.emplace_back();
+      same.clip = same.outliers = take;
+      same.outliers.samples.setZero();
     }
     return as_they_are;
   }
