@@ -94,6 +94,8 @@ ExitCode run(DenoiseOptions options) {
                            .files = job.files,
                            .output = options.output,
                            .outliers = options.outliers,
+                           .mask = options.mask,
+                           .sigma = options.sigma,
                            .report = options.report,
                            .format = options.format});
   if (!options.truth.empty()) job.truths = truths_of(options.truth, job.files);

@@ -32,6 +32,19 @@ void add_files(CLI::App& command, DenoiseOptions& options) {
       ->group(files_group);
   command
       .add_option(
+          "--mask", options.mask,
+          "Also write what became of every sample: 0 kept, 1 corrected, 2 filled, 3 missing "
+          "(docs/gaps.md); a folder when OUTPUT is one")
+      ->type_name("FILE")
+      ->group(files_group);
+  command
+      .add_option("--sigma", options.sigma,
+                  "Also write the standard deviation of every sample, if the method has one; a "
+                  "folder when OUTPUT is one")
+      ->type_name("FILE")
+      ->group(files_group);
+  command
+      .add_option(
           "--format", options.format,
           "Format of results in a folder; otherwise that of the input if possible, else npy")
       ->check(CLI::IsMember({"csv", "npy"}))
@@ -69,6 +82,19 @@ void add_segmentation(CLI::App& command, DenoiseOptions& options) {
       ->check(CLI::NonNegativeNumber)
       ->default_str("0")
       ->type_name("FRAMES")
+      ->group(method_group);
+}
+
+void add_gaps(CLI::App& command, DenoiseOptions& options) {
+  command
+      .add_option("--max-gap", options.max_gap,
+                  "Leave gaps missing that are longer than this, whatever the method fills")
+      ->check(CLI::NonNegativeNumber)
+      ->type_name("SECONDS")
+      ->group(method_group);
+  command
+      .add_flag("--keep-observed", options.keep_observed,
+                "Pass samples that were observed and not rejected through as they are")
       ->group(method_group);
 }
 
@@ -196,6 +222,12 @@ void require_device_work(const DenoiseOptions& options) {
     throw ArgumentError("--profile needs a matrix method; filters run on the host");
 }
 
+void require_sigma(const DenoiseOptions& options) {
+  if (!options.sigma.empty() && !has_sigma(options.chain))
+    throw ArgumentError(fmt::format("--sigma: method {} has no standard deviation per sample",
+                                    to_string(options.chain)));
+}
+
 std::optional<Segmentation> segmentation_given(const DenoiseOptions& options) {
   if (options.segment_length) return Segmentation{.length = *options.segment_length};
   if (options.segments) return Segmentation{.segments = *options.segments};
@@ -207,6 +239,7 @@ std::optional<Segmentation> segmentation_given(const DenoiseOptions& options) {
 void add_denoise_options(CLI::App& command, DenoiseOptions& options) {
   add_files(command, options);
   add_segmentation(command, options);
+  add_gaps(command, options);
   add_method(command, options);
   add_backend_options(command, options);
   add_overlap(command, options);
@@ -227,6 +260,7 @@ void complete(DenoiseOptions& options) {
                                                     options.segment_overlap.value_or(0)});
   require_used(options);
   require_device_work(options);
+  require_sigma(options);
   const LowRank* method = first_low_rank(options.chain);
   options.segmentation = method ? method->segmentation : Segmentation{.whole = true};
   const auto* robust_pca = method ? std::get_if<RobustPca>(&method->method) : nullptr;

@@ -20,6 +20,8 @@ struct DenoiseOptions : BackendOptions {
   InputOptions reading;
   std::filesystem::path output;
   std::filesystem::path outliers;  ///< empty: not asked for
+  std::filesystem::path mask;      ///< status of every sample; empty: not asked for
+  std::filesystem::path sigma;     ///< standard deviations; empty: not asked for
   std::string format;              ///< "csv", "npy" or empty
 
   std::string method_name = "slra";  ///< --method, as it was given
@@ -31,7 +33,9 @@ struct DenoiseOptions : BackendOptions {
   std::optional<double> tolerance;  ///< default: what the precision reaches
   RobustPca method;                 ///< what slra and rpca leave open; tolerance: by complete()
 
-  bool overlap = true;  ///< of reading, solving and writing
+  std::optional<double> max_gap;  ///< seconds; longer gaps stay missing
+  bool keep_observed = false;     ///< pass trusted samples through
+  bool overlap = true;            ///< of reading, solving and writing
 
   std::filesystem::path report;  ///< HTML; empty: none
   std::filesystem::path truth;   ///< file, or folder of files named like the inputs; empty: none

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "moclean/denoise/sample_status.hpp"
 #include "moclean/io/file.hpp"
 
 #include "cli/backend_report.hpp"
@@ -79,6 +80,8 @@ Json take_record(const TakeReport& take) {
   record["seconds"]["solve"] = take.solve_seconds;
   record["seconds"]["write"] = take.write_seconds;
   record["frames_per_second"] = take.frames_per_second();
+  for (std::size_t s = 0; s < take.status.size(); ++s)
+    record["samples"][sample_status_names[s]] = take.status[s];
   record["segments"] = Json::array();
   for (const DenoisedSegment& segment : take.segments)
     record["segments"].push_back(segment_record(segment));

@@ -1,5 +1,6 @@
 #include "cli/outputs.hpp"
 
+#include <array>
 #include <map>
 
 #include <fmt/format.h>
@@ -88,6 +89,31 @@ void require_format(const fs::path& file, const std::string& format) {
     throw ArgumentError(fmt::format("--format {} contradicts {}", format, file.string()));
 }
 
+// A matrix that is written beside the motion, under the option that asks for it.
+struct SideOutput {
+  const char* option;
+  const fs::path& requested;  // file or folder; empty: not asked for
+  std::vector<fs::path>& files;
+};
+
+std::array<SideOutput, 3> side_outputs(const OutputRequest& request, OutputPlan& plan) {
+  return {SideOutput{"--outliers", request.outliers, plan.outliers},
+          SideOutput{"--mask", request.mask, plan.masks},
+          SideOutput{"--sigma", request.sigma, plan.sigmas}};
+}
+
+void require_different_files(const OutputRequest& request, OutputPlan& plan) {
+  std::map<fs::path, const char*> options;
+  for (const fs::path& file : plan.clean) options.emplace(fs::weakly_canonical(file), "-o");
+  for (const SideOutput& side : side_outputs(request, plan))
+    for (const fs::path& file : side.files) {
+      const auto [other, is_new] = options.emplace(fs::weakly_canonical(file), side.option);
+      if (!is_new)
+        throw ArgumentError(fmt::format("{} and {} would both write {}", other->second, side.option,
+                                        file.string()));
+    }
+}
+
 }  // namespace
 
 void require_writable(const fs::path& file) {
@@ -107,9 +133,10 @@ OutputPlan plan_outputs(const OutputRequest& request) {
   if (wants_folder(request)) {
     plan.clean = files_in(request.output, request);
     plan.folders.push_back(request.output);
-    if (!request.outliers.empty()) {
-      plan.outliers = files_in(request.outliers, request);
-      plan.folders.push_back(request.outliers);
+    for (const SideOutput& side : side_outputs(request, plan)) {
+      if (side.requested.empty()) continue;
+      side.files = files_in(side.requested, request);
+      plan.folders.push_back(side.requested);
     }
     if (!request.report.empty()) {
       plan.reports = reports_in(request.report, plan.clean);
@@ -118,18 +145,18 @@ OutputPlan plan_outputs(const OutputRequest& request) {
     for (const fs::path& folder : plan.folders) require_creatable_folder(folder);
   } else {
     plan.clean = {request.output};
-    if (!request.outliers.empty()) plan.outliers = {request.outliers};
-    for (const auto& files : {plan.clean, plan.outliers})
-      for (const fs::path& file : files) require_format(file, request.format);
+    require_format(request.output, request.format);
+    for (const SideOutput& side : side_outputs(request, plan)) {
+      if (side.requested.empty()) continue;
+      side.files = {side.requested};
+      require_format(side.requested, request.format);
+    }
     if (!request.report.empty()) {
       plan.reports = {request.report};
       require_writable_report(request.report);
     }
   }
-  for (std::size_t i = 0; i < plan.outliers.size(); ++i)
-    if (fs::weakly_canonical(plan.clean[i]) == fs::weakly_canonical(plan.outliers[i]))
-      throw ArgumentError(
-          fmt::format("-o and --outliers would both write {}", plan.clean[i].string()));
+  require_different_files(request, plan);
   return plan;
 }
 

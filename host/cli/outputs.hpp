@@ -10,6 +10,8 @@ namespace moclean::cli {
 struct OutputPlan {
   std::vector<std::filesystem::path> clean;     ///< one per input
   std::vector<std::filesystem::path> outliers;  ///< one per input; empty if not asked for
+  std::vector<std::filesystem::path> masks;     ///< as `outliers`
+  std::vector<std::filesystem::path> sigmas;    ///< as `outliers`
   std::vector<std::filesystem::path> reports;   ///< one per input; empty if not asked for
   std::vector<std::filesystem::path> folders;   ///< to be created before anything is written
 };
@@ -20,6 +22,8 @@ struct OutputRequest {
   std::vector<std::filesystem::path> files;   ///< inputs with the folders expanded
   std::filesystem::path output;               ///< file or folder
   std::filesystem::path outliers;             ///< file or folder like `output`; may be empty
+  std::filesystem::path mask;                 ///< as `outliers`
+  std::filesystem::path sigma;                ///< as `outliers`
   std::filesystem::path report;               ///< as `outliers`
   std::string format;                         ///< "csv", "npy", or empty: as the extension says
 };

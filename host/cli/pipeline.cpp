@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/denoise/sample_status.hpp"
 #include "moclean/metric/metric.hpp"
 #include "moclean/solve/reference/reference_backend.hpp"
 
@@ -25,14 +26,18 @@ namespace {
 // with --verify two more while the reference works, and one of a truth. Written they are 2; a
 // report has the noisy take and the truth besides, and the text of the page four times. A chain of
 // several steps keeps what it began with. Segments that overlap are stacked and solved at twice
-// their length at most, as are those of the reference.
+// their length at most, as are those of the reference. A mask and sigma are one more each.
 constexpr std::uint64_t copies_solving = 7, copies_verifying = 9, copies_of_truth = 1,
-                        copies_chained = 2, copies_overlapping = 4, copies_writing = 2,
-                        copies_reporting = 8;
+                        copies_chained = 2, copies_overlapping = 4, copies_of_side = 1,
+                        copies_writing = 2, copies_reporting = 8;
 
 bool overlaps(const Step& step) {
   const auto* low_rank = std::get_if<LowRank>(&step);
   return low_rank && low_rank->segmentation.overlap > 0;
+}
+
+std::uint64_t copies_of_sides(const DenoiseOptions& options) {
+  return copies_of_side * (!options.mask.empty() + !options.sigma.empty());
 }
 
 GroupRules rules_of(const Job& job) {
@@ -42,9 +47,12 @@ GroupRules rules_of(const Job& job) {
   GroupRules rules{.segmentation = method ? method->segmentation : Segmentation{.whole = true}};
   rules.needs = {.every_sample = !accepts_missing(chain),
                  .frame_rate_for = needs_frame_rate(chain)};
+  if (rules.needs.frame_rate_for.empty() && job.options.max_gap)
+    rules.needs.frame_rate_for = "--max-gap";
   rules.full_segments = std::max(rules.least_segments, segments_per_unit * job.compute_units);
   rules.copies = job.options.verify ? copies_verifying : copies_solving;
   if (!job.truths.empty() || !job.options.report.empty()) rules.copies += copies_of_truth;
+  rules.copies += copies_of_sides(job.options);
   if (std::ranges::any_of(chain, overlaps)) rules.copies += copies_overlapping;
   if (chain.size() > 1) rules.copies += copies_chained;
   return rules;
@@ -151,13 +159,34 @@ class Run {
                                .read_seconds = group.read_seconds[i],
                                .solve_seconds = results[i].solve_seconds,
                                .write_seconds = 0,
+                               .status = {},
                                .segments = results[i].segments,
                                .unobserved = results[i].unobserved,
                                .verification = {},
-                               .truth = compared(group, i, results[i].clip)});
+                               .truth = {}});
     if (verifier_) verify(group, results, verifier_->solve(group, expected, reader_.at_end()));
+    for (std::size_t i = 0; i < results.size(); ++i) finish(group, i, results[i]);
     ++report_.groups;
     return results;
+  }
+
+  // What the method has made becomes what the options ask for.
+  void finish(const TakeGroup& group, std::size_t i, Denoised& result) {
+    const Clip& take = group.clips[i];
+    const DenoiseOptions& options = job_.options;
+    if (options.max_gap) leave_long_gaps(take, *options.max_gap, result);
+    if (options.keep_observed) keep_observed(take, result);
+    Clip status = sample_status(take, result);
+    TakeReport& report = report_.takes[group.first + i];
+    report.status = count_status(status);
+    report.truth = compared(group, i, result.clip);
+    if (!options.mask.empty()) masks_[group.first + i] = std::move(status);
+  }
+
+  std::optional<Clip> mask_of(std::size_t take) {
+    auto mask = masks_.extract(take);
+    if (mask.empty()) return std::nullopt;
+    return std::move(mask.mapped());
   }
 
   void read_truths(const TakeGroup& group) {
@@ -221,11 +250,14 @@ class Run {
     for (std::size_t i = 0; i < results.size(); ++i) {
       std::optional<Report> report = report_of(group, i);
       group.clips[i] = {};
-      group.memory[i].resize(group.memory[i].bytes() / rules_of(job_).copies *
-                             (report ? copies_reporting : copies_writing));
+      group.memory[i].resize(
+          group.memory[i].bytes() / rules_of(job_).copies *
+          ((report ? copies_reporting : copies_writing) + copies_of_sides(job_.options)));
       writer_.put({.index = group.first + i,
                    .clip = std::move(results[i].clip),
                    .outliers = std::move(results[i].outliers),
+                   .mask = mask_of(group.first + i),
+                   .sigma = job_.options.sigma.empty() ? std::nullopt : std::move(results[i].sigma),
                    .report = std::move(report),
                    .memory = std::move(group.memory[i])});
     }
@@ -236,6 +268,7 @@ class Run {
   BusyClock clock_;
   const BusyClock::Work all_{clock_};  // reading begins when the reader is made
   RunReport report_;
+  std::map<std::size_t, Clip> masks_;   // by take, from when it is solved until it is written
   std::map<std::size_t, Clip> truths_;  // by take, from before it is solved until it is written
   MemoryBudget budget_;
   ResultWriter writer_;

@@ -89,6 +89,8 @@ void ResultWriter::write(SolvedTake& take) {
   files.push_back(write_temporary(plan_.clean[take.index], take.clip));
   if (!plan_.outliers.empty())
     files.push_back(write_temporary(plan_.outliers[take.index], take.outliers));
+  if (take.mask) files.push_back(write_temporary(plan_.masks[take.index], *take.mask));
+  if (take.sigma) files.push_back(write_temporary(plan_.sigmas[take.index], *take.sigma));
   if (take.report) {
     take.report->take->clean = std::move(take.clip);
     take.report->take->outliers = std::move(take.outliers);

@@ -23,6 +23,8 @@ struct SolvedTake {
   std::size_t index = 0;  ///< of its file
   Clip clip;
   Clip outliers;
+  std::optional<Clip> mask;  ///< of sample_status(), where it is asked for
+  std::optional<Clip> sigma;
   std::optional<Report> report;  ///< to be written, too; clean and outliers are added to it
   MemoryShare memory;
 };

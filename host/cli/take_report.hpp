@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -33,6 +34,7 @@ struct TakeReport {
   double read_seconds = 0;
   double solve_seconds = 0;
   double write_seconds = 0;
+  std::array<Index, 4> status{};          ///< samples of each SampleStatus
   std::vector<DenoisedSegment> segments;  ///< first_frame counts from the first frame used
   std::vector<std::string> unobserved;    ///< columns without a sample, left missing
   std::optional<Verification> verification;

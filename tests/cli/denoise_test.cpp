@@ -120,7 +120,10 @@ TEST_F(Denoise, RecordDescribesEverySegmentOfAnInput) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json input = outcome.json()["inputs"][0];
   EXPECT_THAT(keys(input), UnorderedElementsAre("file", "frames", "columns", "seconds",
-                                                "frames_per_second", "segments"));
+                                                "frames_per_second", "samples", "segments"));
+  const auto& samples = input["samples"];
+  EXPECT_EQ(samples["kept"].get<int>() + samples["corrected"].get<int>(), 120 * 93);
+  EXPECT_EQ(samples["filled"].get<int>() + samples["missing"].get<int>(), 0);
   EXPECT_EQ(input["file"], input_);
   EXPECT_EQ(input["frames"], 120);
   EXPECT_EQ(input["columns"], 93);
@@ -313,6 +316,11 @@ INSTANTIATE_TEST_SUITE_P(
         WrongOptions{"FramesFromBeyond", {"--frames", "10:"}, "walk.csv has 10 frames"},
         WrongOptions{"Format", {"--format", "csv"}, "--format csv contradicts"},
         WrongOptions{"OutliersFormat", {"--outliers", "e.txt"}, "expected .csv or .npy"},
+        WrongOptions{"MaskFormat", {"--mask", "m.txt"}, "expected .csv or .npy"},
+        WrongOptions{"GapNegative", {"--max-gap", "-1"}, "--max-gap"},
+        WrongOptions{"GapText", {"--max-gap", "long"}, "--max-gap"},
+        WrongOptions{"Sigma", {"--sigma", "s.npy"}, "--sigma: method slra:"},
+        WrongOptions{"SigmaOfFilter", {"--method", "median", "--sigma", "s.npy"}, "method median:"},
         WrongOptions{"VerifyReference", {"--verify", "--backend", "reference"}, "--verify"}),
     [](const auto& test) { return test.param.name; });
 

@@ -61,6 +61,9 @@ std::string needs_frame_rate(const Chain& chain);
 /// (completion), or to the end.
 bool accepts_missing(const Chain& chain);
 
+/// Whether the result has a standard deviation per sample (Denoised::sigma). No method has one yet.
+bool has_sigma(const Chain& chain);
+
 /// Runs a chain. The motion is what the last step made; the outliers are those of the method if it
 /// is the only step, otherwise take - motion, 0 where either is missing. Segments are those of the
 /// first matrix method; a chain of filters has none.

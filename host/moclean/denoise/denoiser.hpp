@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -20,6 +21,8 @@ struct DenoisedSegment {
 struct Denoised {
   Clip clip;      ///< the motion
   Clip outliers;  ///< what was taken away as gross error, same shape; zero where nothing was
+  std::optional<Clip> sigma;    ///< standard deviation of the motion, where the method has one
+  std::optional<Mask> trusted;  ///< observed samples that the method did not reject, where it says
   std::vector<DenoisedSegment> segments;
   std::vector<std::string> unobserved = {};  ///< columns without a sample: NaN in the motion
   double solve_seconds =

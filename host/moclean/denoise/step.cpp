@@ -156,6 +156,8 @@ std::string needs_frame_rate(const Chain& chain) {
   return {};
 }
 
+bool has_sigma(const Chain&) { return false; }
+
 bool accepts_missing(const Chain& chain) {
   const LowRank* method = first_low_rank(chain);
   return !method || accepts_missing(method->method);
