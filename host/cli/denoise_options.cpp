@@ -83,6 +83,14 @@ void add_segmentation(CLI::App& command, DenoiseOptions& options) {
       ->default_str("0")
       ->type_name("FRAMES")
       ->group(method_group);
+  command
+      .add_option("--segment", options.division,
+                  "Segments of equal length, or as many that end where it costs least (slra, "
+                  "tslra; docs/segmentation.md)")
+      ->check(CLI::IsMember({"equal", "auto"}))
+      ->capture_default_str()
+      ->type_name("HOW")
+      ->group(method_group);
 }
 
 void add_gaps(CLI::App& command, DenoiseOptions& options) {
@@ -189,7 +197,7 @@ void require_opencl(const DenoiseOptions& options) {
 
 // The options of a method that stands in no step of the chain would have no effect.
 void require_used(const DenoiseOptions& options) {
-  bool robust_pca = false, segmented = false, overlapping = false;
+  bool robust_pca = false, segmented = false, overlapping = false, automatic = false;
   for (const Step& step : options.chain) {
     const auto* low_rank = std::get_if<LowRank>(&step);
     if (!low_rank) continue;
@@ -197,6 +205,7 @@ void require_used(const DenoiseOptions& options) {
     robust_pca = robust_pca || is_robust_pca;
     segmented = segmented || !(is_robust_pca && low_rank->segmentation.whole);
     overlapping = overlapping || low_rank->segmentation.overlap > 0;
+    automatic = automatic || low_rank->segmentation.automatic;
   }
   if (!segmented && (options.segment_length || options.segments))
     throw ArgumentError(
@@ -207,6 +216,8 @@ void require_used(const DenoiseOptions& options) {
         "--overlap is that of segments: it belongs to --method slra and tslra, and to tsvd, svt "
         "and "
         "completion with --segment-length or --segments");
+  if (options.division == "auto" && !automatic)
+    throw ArgumentError("--segment auto belongs to --method slra and tslra");
   if (!robust_pca && (options.tolerance || options.method != RobustPca{}))
     throw ArgumentError(fmt::format(
         "--lambda, --lambda-scale, --rho, --tolerance, --max-iterations and --order belong to "
@@ -256,8 +267,9 @@ void complete(DenoiseOptions& options) {
   if (mixed && defaults.tolerance < mixed_tolerance)
     throw ArgumentError("--precision mixed reaches a tolerance of 1e-06 at best");
   check(defaults);
-  options.chain = parse_chain(options.method_name, {defaults, segmentation_given(options),
-                                                    options.segment_overlap.value_or(0)});
+  options.chain = parse_chain(options.method_name,
+                              {defaults, segmentation_given(options),
+                               options.segment_overlap.value_or(0), options.division == "auto"});
   require_used(options);
   require_device_work(options);
   require_sigma(options);

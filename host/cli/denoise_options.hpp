@@ -28,6 +28,7 @@ struct DenoiseOptions : BackendOptions {
   std::optional<Index> segment_length;
   std::optional<Index> segments;
   std::optional<Index> segment_overlap;  ///< frames; default 0
+  std::string division = "equal";        ///< "equal" | "auto"
   Chain chain = {LowRank{}};        ///< follows from --method and its options; set by complete()
   Segmentation segmentation;        ///< of the chain's first matrix method; set by complete()
   std::optional<double> tolerance;  ///< default: what the precision reaches

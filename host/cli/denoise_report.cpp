@@ -18,10 +18,11 @@ std::string frames_text(const FrameRange& range) {
 
 std::string segmentation_text(const Segmentation& segmentation) {
   if (segmentation.whole) return "the whole take";
+  const char* how = segmentation.automatic ? "automatic" : "equal";
   const std::string text =
       segmentation.segments > 0
-          ? fmt::format("{} equal segments", segmentation.segments)
-          : fmt::format("equal segments of about {} frames", segmentation.length);
+          ? fmt::format("{} {} segments", segmentation.segments, how)
+          : fmt::format("{} segments of about {} frames", how, segmentation.length);
   if (segmentation.overlap == 0) return text;
   return text + fmt::format(", {} frames shared by neighbours", segmentation.overlap);
 }

@@ -26,14 +26,20 @@ namespace {
 // with --verify two more while the reference works, and one of a truth. Written they are 2; a
 // report has the noisy take and the truth besides, and the text of the page four times. A chain of
 // several steps keeps what it began with. Segments that overlap are stacked and solved at twice
-// their length at most, as are those of the reference. A mask and sigma are one more each.
+// their length at most, as are those of the reference. A mask and sigma are one more each. Batches
+// of automatic segments are four times the takes, data and two results; there are medians, too.
 constexpr std::uint64_t copies_solving = 7, copies_verifying = 9, copies_of_truth = 1,
                         copies_chained = 2, copies_overlapping = 4, copies_of_side = 1,
-                        copies_writing = 2, copies_reporting = 8;
+                        copies_choosing = 14, copies_writing = 2, copies_reporting = 8;
 
 bool overlaps(const Step& step) {
   const auto* low_rank = std::get_if<LowRank>(&step);
   return low_rank && low_rank->segmentation.overlap > 0;
+}
+
+bool is_automatic(const Step& step) {
+  const auto* low_rank = std::get_if<LowRank>(&step);
+  return low_rank && low_rank->segmentation.automatic;
 }
 
 std::uint64_t copies_of_sides(const DenoiseOptions& options) {
@@ -53,6 +59,7 @@ GroupRules rules_of(const Job& job) {
   rules.copies = job.options.verify ? copies_verifying : copies_solving;
   if (!job.truths.empty() || !job.options.report.empty()) rules.copies += copies_of_truth;
   rules.copies += copies_of_sides(job.options);
+  if (std::ranges::any_of(chain, is_automatic)) rules.copies += copies_choosing;
   if (std::ranges::any_of(chain, overlaps)) rules.copies += copies_overlapping;
   if (chain.size() > 1) rules.copies += copies_chained;
   return rules;

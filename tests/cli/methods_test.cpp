@@ -94,11 +94,25 @@ TEST_F(Methods, SegmentsOverlapAsTheOptionOrTheKeySays) {
   EXPECT_LE(relative_difference(by_option, expected("slra:segments=3,overlap=12")),
             tolerance::backends_low_rank());
   const auto record = nlohmann::json::parse(content(folder_ / "run.json"));
-  EXPECT_EQ(record["method"]["segmentation"], (nlohmann::json{{"segments", 3}, {"overlap", 12}}));
+  EXPECT_EQ(record["method"]["segmentation"],
+            (nlohmann::json{{"segments", 3}, {"overlap", 12}, {"automatic", false}}));
   EXPECT_EQ(record["inputs"][0]["segments"][1]["first_frame"], 24);
   EXPECT_EQ(record["inputs"][0]["segments"][1]["frames"], 42);
   ASSERT_EQ(denoise(csv_, "slra:segments=3,overlap=12").exit_code, 0);
   EXPECT_TRUE(same_bits(read_clip(output_).samples, by_option));
+}
+
+TEST_F(Methods, AutomaticSegmentsAreThoseOfTheReference) {
+  const Outcome outcome = denoise(
+      csv_, "slra:segments=3", {"--segment", "auto", "--verify", "--json", folder_ / "run.json"});
+
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_LE(
+      relative_difference(read_clip(output_).samples, expected("slra:segments=3,segment=auto")),
+      tolerance::backends_low_rank());
+  const auto record = nlohmann::json::parse(content(folder_ / "run.json"));
+  EXPECT_EQ(record["method"]["segmentation"]["automatic"], true);
+  EXPECT_EQ(record["inputs"][0]["segments"].size(), 3);
 }
 
 TEST_F(Methods, AFilterInHertzNeedsTheFrameRate) {

@@ -65,6 +65,20 @@ TEST(ParseChain, ReadsTheOverlapOfSegments) {
   expect_refused("tsvd:overlap=9", "overlap needs segment-length or segments");
 }
 
+TEST(ParseChain, ReadsAutomaticSegmentsOfSlra) {
+  const Step automatic = LowRank{{.segments = 3, .automatic = true}, RobustPca{}};
+
+  EXPECT_EQ(parse_chain("slra:segments=3,segment=auto")[0], automatic);
+  EXPECT_EQ(parse_chain("slra:segments=3", {.automatic = true})[0], automatic);
+  EXPECT_EQ(parse_chain(to_string(automatic))[0], automatic);
+  EXPECT_EQ(parse_chain("slra:segment=equal", {.automatic = true})[0], Step(LowRank{}));
+  EXPECT_EQ(parse_chain("tsvd:segments=3", {.automatic = true})[0],
+            Step(LowRank{{.segments = 3}, TruncatedSvd{}}));
+  expect_refused("tsvd:segments=3,segment=auto",
+                 "method tsvd: unknown key 'segment', expected one of rank, segment-length, "
+                 "segments, overlap");
+}
+
 TEST(ParseChain, GivesTheDefaultOverlapToMethodsThatCut) {
   const StepDefaults defaults{.overlap = 12};
 

@@ -42,7 +42,6 @@ TEST(SegmentationPlan, PrefersWholeThenANumberThenALength) {
   EXPECT_THAT(plan({.segments = 2, .length = 10}, 100), ElementsAre(0, 50, 100));
   EXPECT_THAT(plan({.length = 50}, 100), ElementsAre(0, 50, 100));
   EXPECT_THAT(plan({}, 400), ElementsAre(0, 200, 400));
-  EXPECT_THAT(spans({.length = 50, .overlap = 10}, 100), ElementsAre(Span{0, 55}, Span{45, 100}));
   EXPECT_THROW(plan({.segments = -1}, 100), ArgumentError);
 }
 

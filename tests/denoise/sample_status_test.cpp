@@ -27,7 +27,8 @@ Clip take_of(Matrix samples) {
 
 // A result that is 1 everywhere, of a take that is 1 but for the given outliers.
 Denoised result_of(const Clip& take) {
-  Denoised result{.clip = take, .outliers = take};
+  Denoised result;
+  result.clip = result.outliers = take;
   result.clip.samples.setOnes();
   result.outliers.samples = take.samples.array().isNaN().select(0, take.samples.array() - 1);
   return result;

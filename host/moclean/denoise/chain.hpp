@@ -32,14 +32,16 @@ struct StepDefaults {
   /// Of slra (else 200 frames), tslra (else 400), tsvd, svt and completion (else the take whole);
   /// rpca is always whole.
   std::optional<Segmentation> segmentation = {};
-  Index overlap = 0;  ///< of the segments of every method that cuts the take
+  Index overlap = 0;       ///< of the segments of every method that cuts the take
+  bool automatic = false;  ///< segments of slra and tslra where it costs least
 };
 
 /// The names a step may begin with: slra, rpca, tsvd, svt, completion, tslra and the filters.
 std::vector<std::string_view> step_names();
 
 /// Reads `hampel:window=7,sigmas=3+butterworth:cutoff=10`. The keys of a matrix method are its
-/// parameters and, but for rpca, segment-length, segments and overlap. Throws ArgumentError naming
+/// parameters and, but for rpca, segment-length, segments
+/// and overlap, and for slra and tslra segment=auto. Throws ArgumentError naming
 /// the part that is wrong and what would be right.
 Chain parse_chain(std::string_view specification, const StepDefaults& defaults = {});
 

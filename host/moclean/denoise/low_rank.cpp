@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/denoise/automatic_plan.hpp"
 #include "moclean/denoise/unobserved.hpp"
 
 namespace moclean {
@@ -69,6 +70,19 @@ Clip unstack(const SegmentBatch& batch, std::span<const Span> cut, Index first_s
           .unit = take.unit};
 }
 
+// Automatic segments are compared by robust PCA, whatever the method: by its own if it is that.
+std::vector<SegmentPlan> plans_of(std::span<const Clip> takes, const Segmentation& segmentation,
+                                  const Method& method, Backend& backend,
+                                  const std::stop_token& stop) {
+  std::vector<SegmentPlan> equal;
+  for (const Clip& take : takes) equal.push_back(plan(segmentation, take.frames()));
+  if (!segmentation.automatic) return equal;
+  std::vector<Index> counts;
+  for (const SegmentPlan& one : equal) counts.push_back(static_cast<Index>(one.size()) - 1);
+  const auto* robust_pca = std::get_if<RobustPca>(&method);
+  return automatic_plans(takes, counts, robust_pca ? *robust_pca : RobustPca{}, backend, stop);
+}
+
 void scatter(const Group& group, const Solution& solution, double seconds,
              std::span<const Clip> takes, std::span<const Spans> cuts,
              std::vector<Denoised>& results) {
@@ -98,17 +112,13 @@ SegmentPlan plan(const Segmentation& segmentation, Index frames) {
   return segments_of_length(frames, segmentation.length);
 }
 
-Spans spans(const Segmentation& segmentation, Index frames) {
-  return overlapping_spans(plan(segmentation, frames), segmentation.overlap);
-}
-
 std::vector<Denoised> LowRankDenoiser::denoise(std::span<const Clip> takes,
                                                const Monitor& monitor) {
-  std::vector<Spans> cuts;
-  for (std::size_t t = 0; t < takes.size(); ++t) {
+  for (std::size_t t = 0; t < takes.size(); ++t)
     require_usable(takes[t], t, accepts_missing(method_));
-    cuts.push_back(spans(segmentation_, takes[t].frames()));
-  }
+  std::vector<Spans> cuts;
+  for (const SegmentPlan& one : plans_of(takes, segmentation_, method_, backend_, monitor.stop))
+    cuts.push_back(overlapping_spans(one, segmentation_.overlap));
   const std::vector<Group> groups = group_by_width(takes, cuts);
   Progress all;
   for (const Group& group : groups) all.total += group.data.segments();

@@ -13,14 +13,13 @@ struct Segmentation {
   Index length = 200;  ///< otherwise: equal segments of about so many frames
   Index overlap = 0;   ///< frames that neighbours share (overlapping_spans) and that are blended
 
+  bool automatic = false;  ///< so many segments, but cut where it costs least (automatic_plan.hpp)
+
   bool operator==(const Segmentation&) const = default;
 };
 
-/// The plan for a take of `frames` frames.
+/// The equal plan for a take of `frames` frames; an automatic one has as many segments.
 SegmentPlan plan(const Segmentation& segmentation, Index frames);
-
-/// The segments of that plan with their overlap.
-Spans spans(const Segmentation& segmentation, Index frames);
 
 /// A matrix method segment by segment: cut, split every segment, stitch. With robust PCA it is the
 /// segmented low-rank approximation of Peng et al.; with Segmentation{.whole = true} plain RPCA of

@@ -1,3 +1,5 @@
+#include <array>
+
 #include "moclean/core/error.hpp"
 #include "moclean/denoise/chain.hpp"
 
@@ -12,6 +14,15 @@ constexpr Segmentation default_segmentation = {.whole = true};
 template <>
 constexpr Segmentation default_segmentation<TemporalRobustPca> = {.length = 400};
 
+// Where segments end.
+enum class Division { equal, automatic };
+constexpr std::array<std::string_view, 2> divisions = {"equal", "auto"};
+
+// The methods that can be cut automatically.
+template <class M>
+constexpr bool can_be_automatic =
+    std::is_same_v<M, RobustPca> || std::is_same_v<M, TemporalRobustPca>;
+
 // A method's parameters and those of its segmentation, as one specification has them.
 template <class M>
 struct Segmented {
@@ -19,12 +30,14 @@ struct Segmented {
   std::optional<Index> length = {};
   std::optional<Index> segments = {};
   std::optional<Index> overlap = {};
+  Division division = Division::equal;
 
   static void visit(auto& self, auto& visitor) {
     M::visit(self.method, visitor);
     visitor("segment-length", self.length);
     visitor("segments", self.segments);
     visitor("overlap", self.overlap);
+    if constexpr (can_be_automatic<M>) visitor("segment", self.division, divisions);
   }
 
   Segmentation segmentation(const StepDefaults& defaults, const Segmentation& otherwise) const {
@@ -33,6 +46,7 @@ struct Segmented {
     if (segments) cut = {.segments = *segments};
     if (cut.whole && overlap.value_or(0) > 0)
       throw ArgumentError("overlap needs segment-length or segments");
+    cut.automatic = !cut.whole && division == Division::automatic;
     if (!cut.whole) cut.overlap = overlap.value_or(defaults.overlap);
     return cut;
   }
@@ -52,7 +66,9 @@ void check(const Segmented<M>& step) {
 template <class M>
 Step read_segmented(const Specification& given, const M& method, const StepDefaults& defaults,
                     const Segmentation& otherwise) {
-  const auto step = read_parameters<Segmented<M>>(given, {.method = method});
+  const bool automatic = can_be_automatic<M> && defaults.automatic;
+  const auto step = read_parameters<Segmented<M>>(
+      given, {.method = method, .division = automatic ? Division::automatic : Division::equal});
   return LowRank{step.segmentation(defaults, otherwise), step.method};
 }
 
@@ -104,6 +120,7 @@ std::string specification_of(const LowRank& step) {
         if (!cut.whole && cut.segments == 0) writer("segment-length", cut.length);
         if (!cut.whole && cut.segments > 0) writer("segments", cut.segments);
         if (cut.overlap > 0) writer("overlap", cut.overlap);
+        if (cut.automatic) writer("segment", Division::automatic, divisions);
         return writer.text();
       },
       step.method);
