@@ -22,8 +22,8 @@ struct OutputRequest {
   std::vector<std::filesystem::path> files;   ///< inputs with the folders expanded
   std::filesystem::path output;               ///< file or folder
   std::filesystem::path outliers;             ///< file or folder like `output`; may be empty
-  std::filesystem::path mask;                 ///< as `outliers`
-  std::filesystem::path sigma;                ///< as `outliers`
+  std::filesystem::path mask = {};            ///< as `outliers`
+  std::filesystem::path sigma = {};           ///< as `outliers`
   std::filesystem::path report;               ///< as `outliers`
   std::string format;                         ///< "csv", "npy", or empty: as the extension says
 };
