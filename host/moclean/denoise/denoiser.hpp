@@ -21,10 +21,9 @@ struct DenoisedSegment {
 struct Denoised {
   Clip clip;      ///< the motion
   Clip outliers;  ///< what was taken away as gross error, same shape; zero where nothing was
-  std::optional<Clip> sigma = {};  ///< standard deviation of the motion, where the method has one
-  std::optional<Mask> trusted =
-      {};  ///< observed samples that the method did not reject, where it says
-  std::vector<DenoisedSegment> segments;
+  std::optional<Clip> sigma = {};    ///< standard deviation of the motion, where the method has one
+  std::optional<Mask> trusted = {};  ///< observed samples it did not reject, where it says
+  std::vector<DenoisedSegment> segments = {};
   std::vector<std::string> unobserved = {};  ///< columns without a sample: NaN in the motion
   double solve_seconds =
       0;  ///< wall time; takes solved together share it by their number of frames
