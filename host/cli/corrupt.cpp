@@ -64,6 +64,7 @@ void add_corrupt(CLI::App& program, Action& action) {
       "  gap:count=RUNS,length=FRAMES              or fraction=SHARE\n"
       "  swap:count=RUNS,length=FRAMES             or fraction=SHARE\n"
       "  drift:count=RUNS,length=FRAMES,sd=S       or fraction=SHARE\n"
+      "  ramp:count=RUNS,length=FRAMES,sd=S        or fraction=SHARE\n"
       "The same seed gives the same noise everywhere.\n\n"
       "Example:\n"
       "  moclean corrupt walk.bvh -o noisy.csv --noise gaussian-frames:frames=400,mean=1,sd=1.2 "

@@ -42,7 +42,7 @@ TEST(ParseNoise, ReadsBackWhatToStringWrites) {
 }
 
 TEST(ParseNoise, NamesWhatIsWrongAndWhatWouldBeRight) {
-  const std::string all = "gaussian-frames, gaussian, dropout, burst, gap, swap, drift";
+  const std::string all = "gaussian-frames, gaussian, dropout, burst, gap, swap, drift, ramp";
   expect_refused("salt:frames=1", "unknown noise 'salt', expected one of " + all);
   expect_refused("", "unknown noise '', expected one of " + all);
   expect_refused("gaussian-frames:frame=4",
@@ -90,6 +90,7 @@ TEST(ParseNoise, ReadsEveryModel) {
   EXPECT_EQ(parse_noise("gap:fraction=0.1"), Noise(Gap{.runs = {.fraction = 0.1}}));
   EXPECT_EQ(parse_noise("swap:count=2"), Noise(Swap{.runs = {.count = 2}}));
   EXPECT_EQ(parse_noise("drift:count=2,sd=9"), Noise(Drift{.runs = {.count = 2}, .sd = 9}));
+  EXPECT_EQ(parse_noise("ramp:count=2,sd=9"), Noise(Ramp{.runs = {.count = 2}, .sd = 9}));
   for (const char* text :
        {"gaussian:sd=0.1", "dropout:fraction=0.1,fill=nan,background=none,snr=15",
         "burst:count=3,length=40,sd=2", "swap:fraction=0.25,length=60"})
@@ -101,7 +102,7 @@ TEST(Corrupt, EveryModelRepeatsWithTheSeedAndKeepsToItsMask) {
   for (const char* model :
        {"gaussian-frames:frames=20", "gaussian:snr=10", "dropout:background=none,fill=nan",
         "burst:count=4,length=20", "gap:count=4,length=20", "swap:count=4,length=20",
-        "drift:count=4,length=20"}) {
+        "drift:count=4,length=20", "ramp:count=4,length=20"}) {
     const Noise noise = parse_noise(model);
 
     const Corrupted noisy = corrupt(walk, noise, 3), again = corrupt(walk, noise, 3);

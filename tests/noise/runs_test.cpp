@@ -76,6 +76,32 @@ TEST(Drift, GrowsEvenlyToItsVector) {
   EXPECT_EQ(touched.count(), 40 * 3);
 }
 
+TEST(Ramp, RisesStaysAndFallsByThirds) {
+  Clip walk = test::synthetic_walk(100);
+  const Matrix clean = walk.samples;
+
+  const Mask touched = spoil(Ramp{.runs = {.count = 1, .length = 8}, .sd = 5}, walk);
+
+  const double shares[] = {1 / 3.0, 2 / 3.0, 1, 1, 1, 1, 2 / 3.0, 1 / 3.0};
+  const Index first = begin_of(touched);
+  const Matrix added = walk.samples - clean;
+  EXPECT_EQ((added.array() != 0).count(), 8 * 3);
+  EXPECT_EQ(touched.count(), 8 * 3);
+  for (Index c = 0; c < 93; ++c)
+    for (Index t = 0; t < 8; ++t)
+      EXPECT_NEAR(added(first + t, c), added(first + 3, c) * shares[t],
+                  test::tolerance::by_hand(60));
+}
+
+TEST(Ramp, OfTwoFramesIsABurst) {
+  Clip ramp = test::synthetic_walk(50), burst = ramp;
+
+  spoil(Ramp{.runs = {.count = 3, .length = 2}}, ramp);
+  spoil(Burst{.runs = {.count = 3, .length = 2}}, burst);
+
+  EXPECT_TRUE(test::same_bits(ramp.samples, burst.samples));
+}
+
 TEST(Gap, RemovesWholeJoints) {
   Clip walk = test::synthetic_walk(100);
   walk.samples.col(4).setConstant(nan);
@@ -147,6 +173,8 @@ TEST(Runs, RefuseWhatDoesNotFit) {
       ThrowsMessage<ArgumentError>("burst needs count=RUNS or fraction=SHARE, and not both"));
   EXPECT_THAT([&] { spoil(Drift{.runs = {.count = 1}, .sd = -1}, narrow); },
               ThrowsMessage<ArgumentError>("drift: sd is -1, expected at least 0"));
+  EXPECT_THAT([&] { spoil(Ramp{.runs = {.count = 1}, .sd = nan}, walk); },
+              ThrowsMessage<ArgumentError>("ramp: sd is nan, expected at least 0"));
   EXPECT_THAT([&] { spoil(Swap{.runs = {.count = 1, .length = 1}}, narrow); },
               ThrowsMessage<ArgumentError>("swap: the clip has only one column"));
   EXPECT_THROW(spoil(Gap{.runs = {.fraction = 1.5}}, walk), ArgumentError);

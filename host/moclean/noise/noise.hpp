@@ -14,7 +14,7 @@
 namespace moclean {
 
 /// Every noise model there is.
-using Noise = std::variant<GaussianFrames, Gaussian, Dropout, Burst, Gap, Swap, Drift>;
+using Noise = std::variant<GaussianFrames, Gaussian, Dropout, Burst, Gap, Swap, Drift, Ramp>;
 
 /// What their specifications begin with.
 std::vector<std::string_view> noise_names();

@@ -1,5 +1,6 @@
 #include "moclean/noise/runs.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -95,6 +96,11 @@ void check(const Drift& noise) {
   check_deviation(Drift::name, noise.sd);
 }
 
+void check(const Ramp& noise) {
+  check_runs(Ramp::name, noise.runs);
+  check_deviation(Ramp::name, noise.sd);
+}
+
 Mask add_noise(const Burst& noise, Random& random, Clip& clip) {
   check(noise);
   return displace(Burst::name, noise.runs, noise.sd, random, clip, [](Index) { return 1.0; });
@@ -104,6 +110,15 @@ Mask add_noise(const Drift& noise, Random& random, Clip& clip) {
   check(noise);
   return displace(Drift::name, noise.runs, noise.sd, random, clip, [&](Index t) {
     return static_cast<double>(t + 1) / static_cast<double>(noise.runs.length);
+  });
+}
+
+Mask add_noise(const Ramp& noise, Random& random, Clip& clip) {
+  check(noise);
+  const Index length = noise.runs.length, rising = length / 3;
+  return displace(Ramp::name, noise.runs, noise.sd, random, clip, [&](Index t) {
+    const Index steps = std::min({t + 1, length - t, rising + 1});
+    return static_cast<double>(steps) / static_cast<double>(rising + 1);
   });
 }
 

@@ -80,11 +80,29 @@ struct Drift {
   }
 };
 
+/// A joint is displaced gradually, stays there, and comes back, so that no single frame gives it
+/// away. The run has a vector drawn as for Burst; with w = length / 3 rounded down, the joint is
+/// displaced by 1/(w + 1), 2/(w + 1) .. w/(w + 1) of it in the first w frames, by all of it in the
+/// next length - 2 w, and by the same shares in reverse in the last w.
+struct Ramp {
+  Runs runs = {};
+  double sd = 5;  ///< of each coordinate in the middle of a run, in the unit of the clip, >= 0
+
+  bool operator==(const Ramp&) const = default;
+
+  static constexpr std::string_view name = "ramp";
+  static void visit(auto& self, auto& visitor) {
+    Runs::visit(self.runs, visitor);
+    visitor("sd", self.sd);
+  }
+};
+
 /// Throws ArgumentError for parameters out of range.
 void check(const Burst& noise);
 void check(const Gap& noise);
 void check(const Swap& noise);
 void check(const Drift& noise);
+void check(const Ramp& noise);
 
 /// Spoils the clip's samples and returns the entries that were touched. NaN stays NaN and
 /// untouched; draws do not depend on the samples. Throws ArgumentError if a run is longer than the
@@ -93,5 +111,6 @@ Mask add_noise(const Burst& noise, Random& random, Clip& clip);
 Mask add_noise(const Gap& noise, Random& random, Clip& clip);
 Mask add_noise(const Swap& noise, Random& random, Clip& clip);
 Mask add_noise(const Drift& noise, Random& random, Clip& clip);
+Mask add_noise(const Ramp& noise, Random& random, Clip& clip);
 
 }  // namespace moclean
