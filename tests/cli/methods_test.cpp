@@ -125,7 +125,7 @@ TEST_F(Methods, AFilterInHertzNeedsTheFrameRate) {
   EXPECT_TRUE(same_bits(read_clip(output_).samples, expected("butterworth:cutoff=10")));
 }
 
-TEST_F(Methods, FiltersKeepGapsAndCompletionFillsThem) {
+TEST_F(Methods, FiltersKeepGapsAndOthersFillThem) {
   Clip holey = walk_;
   holey.samples.block(20, 3, 15, 3).setConstant(std::nan(""));
   const std::string input = folder_.write("holey.csv", holey);
@@ -133,6 +133,8 @@ TEST_F(Methods, FiltersKeepGapsAndCompletionFillsThem) {
   ASSERT_EQ(denoise(input, "hampel").exit_code, 0);
   EXPECT_EQ(read_clip(output_).samples.array().isNaN().count(), 45);
   ASSERT_EQ(denoise(input, "hampel+completion").exit_code, 0);
+  EXPECT_TRUE(read_clip(output_).samples.allFinite());
+  ASSERT_EQ(denoise(input, "hampel+interpolate:kind=pchip+tsvd:rank=5").exit_code, 0);
   EXPECT_TRUE(read_clip(output_).samples.allFinite());
   const Outcome refused = denoise(input, "hampel+tsvd:rank=5");
   EXPECT_EQ(refused.exit_code, 1);

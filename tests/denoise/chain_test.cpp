@@ -127,11 +127,11 @@ TEST(ParseChain, NamesWhatIsWrongAndWhatWouldBeRight) {
       "pca",
       "unknown method 'pca', expected one of slra, rpca, tsvd, svt, completion, tslra, "
       "moving-average, gaussian, median, hampel, butterworth, savitzky-golay, whittaker, "
-      "whittaker-l1, kalman");
+      "whittaker-l1, kalman, interpolate");
   expect_refused("median+",
                  "unknown method '', expected one of slra, rpca, tsvd, svt, completion, tslra, "
                  "moving-average, gaussian, median, hampel, butterworth, "
-                 "savitzky-golay, whittaker, whittaker-l1, kalman");
+                 "savitzky-golay, whittaker, whittaker-l1, kalman, interpolate");
   expect_refused("hampel:width=7",
                  "method hampel: unknown key 'width', expected one of window, sigmas");
   expect_refused("tsvd:rank=0", "rank is 0, expected at least 1");
@@ -199,6 +199,19 @@ TEST(ChainDenoiser, CompletesWhatIsMissing) {
   EXPECT_LT(frobenius_distance(walk.samples, smooth.clip.samples), 0.5);
 }
 
+TEST(ChainDenoiser, InterpolatesForMethodsThatNeedEverySample) {
+  Clip take = noisy_walk(60);
+  take.samples.block(10, 3, 9, 3).setConstant(nan);
+
+  const Denoised result = run("interpolate+tsvd:rank=6", take);
+
+  const Clip whole = filtered(take, Interpolate{});
+  EXPECT_TRUE(whole.samples.allFinite());
+  EXPECT_TRUE(test::same_bits(result.clip.samples, run("tsvd:rank=6", whole).clip.samples));
+  EXPECT_TRUE(result.outliers.samples.allFinite());
+  EXPECT_EQ(result.outliers.samples.block(10, 3, 9, 3).norm(), 0);
+}
+
 TEST(ChainDenoiser, CountsTheSegmentsOfAllItsMethods) {
   const Clip take = noisy_walk(80);
   std::vector<Progress> reports;
@@ -237,6 +250,8 @@ TEST(Chains, SayWhatTheyNeed) {
   EXPECT_TRUE(accepts_missing(parse_chain("hampel+median")));
   EXPECT_TRUE(accepts_missing(parse_chain("hampel+completion+slra")));
   EXPECT_FALSE(accepts_missing(parse_chain("hampel+tsvd+completion")));
+  EXPECT_FALSE(accepts_missing(parse_chain("tsvd+interpolate")));
+  EXPECT_TRUE(accepts_missing(parse_chain("hampel+interpolate+tsvd")));
   EXPECT_EQ(needs_frame_rate(parse_chain("slra+kalman+butterworth")), "kalman");
   EXPECT_EQ(needs_frame_rate(parse_chain("slra+median")), "");
   EXPECT_FALSE(needs_backend(parse_chain("hampel+median")));

@@ -18,8 +18,16 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // One of each kind.
 std::vector<Filter> every_filter() {
-  return {MovingAverage{}, GaussianFilter{}, MedianFilter{},    Hampel{},        Butterworth{},
-          SavitzkyGolay{}, Whittaker{},      RobustWhittaker{}, KalmanSmoother{}};
+  return {MovingAverage{}, GaussianFilter{}, MedianFilter{},    Hampel{},         Butterworth{},
+          SavitzkyGolay{}, Whittaker{},      RobustWhittaker{}, KalmanSmoother{}, Interpolate{}};
+}
+
+// What a filter does not know: gaps, or the column without a sample.
+Mask left_missing(const Clip& clip, const Filter& filter) {
+  Mask missing = clip.samples.array().isNaN();
+  for (Index c = 0; c < missing.cols(); ++c)
+    if (fills_gaps(filter) && !missing.col(c).all()) missing.col(c).setConstant(false);
+  return missing;
 }
 
 TEST(Filtered, CoversEveryFilter) {
@@ -27,7 +35,7 @@ TEST(Filtered, CoversEveryFilter) {
   for (std::size_t i = 0; i < every_filter().size(); ++i) EXPECT_EQ(every_filter()[i].index(), i);
 }
 
-TEST(Filtered, KeepsGapsAndNamesAndTreatsEveryColumnAlike) {
+TEST(Filtered, KeepsGapsOrFillsThemKeepsNamesAndTreatsEveryColumnAlike) {
   Clip walk = test::synthetic_walk(60);
   walk.samples.col(5) = walk.samples.col(4);
   walk.samples.block(20, 7, 12, 1).setConstant(nan);
@@ -39,9 +47,14 @@ TEST(Filtered, KeepsGapsAndNamesAndTreatsEveryColumnAlike) {
 
     EXPECT_EQ(result.columns, walk.columns);
     EXPECT_EQ(result.frame_rate, walk.frame_rate);
-    EXPECT_TRUE((result.samples.array().isNaN() == walk.samples.array().isNaN()).all());
+    EXPECT_TRUE((result.samples.array().isNaN() == left_missing(walk, filter)).all());
     EXPECT_TRUE(test::same_bits(Matrix(result.samples.col(5)), Matrix(result.samples.col(4))));
   }
+}
+
+TEST(Filtered, OnlyInterpolateFillsGaps) {
+  for (const Filter& filter : every_filter())
+    EXPECT_EQ(fills_gaps(filter), std::holds_alternative<Interpolate>(filter)) << name_of(filter);
 }
 
 TEST(Filtered, DoesNotDependOnTheNumberOfThreads) {

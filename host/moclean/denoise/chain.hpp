@@ -60,7 +60,7 @@ inline bool needs_backend(const Chain& chain) { return first_low_rank(chain) != 
 std::string needs_frame_rate(const Chain& chain);
 
 /// Whether the chain takes NaN for "not observed": all steps do up to one that leaves none
-/// (completion), or to the end.
+/// but in columns without a sample (completion, interpolate), or to the end.
 bool accepts_missing(const Chain& chain);
 
 /// Whether the result has a standard deviation per sample (Denoised::sigma). No method has one yet.

@@ -176,8 +176,11 @@ std::string needs_frame_rate(const Chain& chain) {
 bool has_sigma(const Chain&) { return false; }
 
 bool accepts_missing(const Chain& chain) {
-  const LowRank* method = first_low_rank(chain);
-  return !method || accepts_missing(method->method);
+  for (const Step& step : chain) {
+    if (const auto* method = std::get_if<LowRank>(&step)) return accepts_missing(method->method);
+    if (fills_gaps(std::get<Filter>(step))) return true;
+  }
+  return true;
 }
 
 }  // namespace moclean

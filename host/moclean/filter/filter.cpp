@@ -36,6 +36,14 @@ bool needs_frame_rate(const Filter& filter) {
   return std::visit([]<class F>(const F&) { return has_frame_rate<F>; }, filter);
 }
 
+bool fills_gaps(const Filter& filter) {
+  return std::visit(
+      []<class F>(const F&) {
+        return requires { F::fills_gaps; };
+      },
+      filter);
+}
+
 std::string_view name_of(const Filter& filter) {
   return std::visit([]<class F>(const F&) { return F::name; }, filter);
 }

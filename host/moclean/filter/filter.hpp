@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "moclean/filter/butterworth.hpp"
+#include "moclean/filter/interpolate.hpp"
 #include "moclean/filter/kalman.hpp"
 #include "moclean/filter/savitzky_golay.hpp"
 #include "moclean/filter/whittaker.hpp"
@@ -15,9 +16,9 @@
 namespace moclean {
 
 /// Every filter there is. Each works on one channel at a time; what it does at the ends of a take
-/// and beside gaps stands in its own comment. A sample that is NaN stays NaN.
+/// and beside gaps stands in its own comment. A sample that is NaN stays NaN unless fills_gaps().
 using Filter = std::variant<MovingAverage, GaussianFilter, MedianFilter, Hampel, Butterworth,
-                            SavitzkyGolay, Whittaker, RobustWhittaker, KalmanSmoother>;
+                            SavitzkyGolay, Whittaker, RobustWhittaker, KalmanSmoother, Interpolate>;
 
 /// Whether a filter's parameters are in Hz or per second.
 template <class F>
@@ -25,6 +26,9 @@ inline constexpr bool has_frame_rate = requires {
   F::needs_frame_rate;
 };
 bool needs_frame_rate(const Filter& filter);
+
+/// Whether a filter leaves no sample missing but in channels without any.
+bool fills_gaps(const Filter& filter);
 
 /// What its specifications begin with.
 std::string_view name_of(const Filter& filter);
