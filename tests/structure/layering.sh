@@ -9,6 +9,7 @@ cd "$1"
 declare -A may_include=(
   [moclean/core]=''
   [moclean/motion]='moclean/core'
+  [moclean/body]='moclean/core moclean/motion'
   [moclean/io]='moclean/core moclean/motion'
   [moclean/noise]='moclean/core moclean/motion'
   [moclean/segment]='moclean/core moclean/motion'
@@ -19,7 +20,7 @@ declare -A may_include=(
   [moclean/solve]='moclean/core'
   [moclean/solve/reference]='moclean/core moclean/solve'
   [moclean/solve/opencl]='moclean/core moclean/device moclean/linalg moclean/solve'
-  [moclean/denoise]='moclean/core moclean/motion moclean/segment moclean/filter moclean/solve'
+  [moclean/denoise]='moclean/core moclean/motion moclean/body moclean/segment moclean/filter moclean/solve'
   [moclean/experiment]='moclean/core moclean/motion moclean/io moclean/noise moclean/metric moclean/denoise moclean/solve'
   [moclean/report]='moclean/core moclean/motion moclean/metric moclean/denoise'
   [cli]='*'

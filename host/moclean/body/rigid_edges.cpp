@@ -1,0 +1,110 @@
+#include "moclean/body/rigid_edges.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "moclean/core/order_statistics.hpp"
+
+namespace moclean {
+namespace {
+
+constexpr std::size_t partners = 6, fewest_values = 20;
+// Deviations of a normal distribution within which its central third lies.
+constexpr double deviations_of_third = 0.4307;
+constexpr Index enough_frames = 400, fewest_joints = 4;
+constexpr double cut = 5, broken = 0.4;            // deviations; share of frames off the centre
+constexpr double hard_edge = 3, exact_edge = 0.3;  // spread, in units of the smallest
+constexpr double soft_edge = 7e-3;                 // spread, of the size
+constexpr double tail = 0.95, deviations_of_tail = 1.96;
+
+struct Pair {
+  RigidEdge edge;
+  bool steady = false;  // not a posture that is held for half of the take
+  double tail_spread = std::numeric_limits<double>::infinity();  // by the largest deviations
+};
+
+Pair look_at(const BodyTake& take, Index first, Index second, double smallest) {
+  Pair pair{.edge = {.first = first, .second = second}};
+  std::vector<double> distances;
+  const Index step = std::max<Index>(1, take.frames() / enough_frames);
+  for (Index i = 0; i < take.frames(); i += step)
+    if (take.seen(i, first) && take.seen(i, second))
+      distances.push_back((take.position(i, first) - take.position(i, second)).norm());
+  const Core core = steady_core(distances);
+  pair.edge.length = core.centre;
+  pair.edge.spread = core.spread;
+  if (!std::isfinite(core.spread)) return pair;
+  for (double& d : distances) d = std::abs(d - core.centre);
+  pair.tail_spread = quantile(distances, tail) / deviations_of_tail;
+  const double limit = cut * std::max(core.spread, smallest);
+  const auto off = std::ranges::count_if(distances, [&](double d) { return d > limit; });
+  const bool exact = core.spread < exact_edge * smallest;  // may be off: a burst in a short take
+  pair.steady = exact || static_cast<double>(off) <= broken * static_cast<double>(distances.size());
+  pair.edge.hard = pair.steady && core.spread < hard_edge * smallest;
+  pair.edge.exact = exact;
+  return pair;
+}
+
+// Per joint the spread of its sixth steadiest pair.
+std::vector<double> partner_bounds(const std::vector<Pair>& pairs, Index joints) {
+  std::vector<std::vector<double>> spreads(static_cast<std::size_t>(joints));
+  for (const Pair& pair : pairs)
+    for (const Index j : {pair.edge.first, pair.edge.second})
+      spreads[static_cast<std::size_t>(j)].push_back(pair.edge.spread);
+  std::vector<double> bounds;
+  for (auto& own : spreads) {
+    const std::size_t place = std::min(partners, own.size()) - 1;
+    std::ranges::nth_element(own, own.begin() + static_cast<std::ptrdiff_t>(place));
+    bounds.push_back(own[place]);
+  }
+  return bounds;
+}
+
+}  // namespace
+
+bool RigidBody::is_rigid() const {
+  return std::ranges::any_of(edges, [](const RigidEdge& e) { return e.hard; });
+}
+
+Core steady_core(std::vector<double>& values) {
+  if (values.size() <= fewest_values) return {0, std::numeric_limits<double>::infinity()};
+  std::ranges::sort(values);
+  const std::size_t third = (values.size() + 2) / 3;
+  std::size_t best = 0;
+  for (std::size_t k = 1; k + third < values.size(); ++k)
+    if (values[k + third] - values[k] < values[best + third] - values[best]) best = k;
+  const double low = values[best], high = values[best + third];
+  return {(low + high) / 2, (high - low) / 2 / deviations_of_third};
+}
+
+RigidBody learn_rigid_body(const BodyTake& take, double size, double smallest) {
+  RigidBody body;
+  body.judged.assign(static_cast<std::size_t>(take.joints()), false);
+  if (take.joints() < fewest_joints) return body;
+  std::vector<Pair> pairs;
+  for (Index a = 0; a < take.joints(); ++a)
+    for (Index b = a + 1; b < take.joints(); ++b) pairs.push_back(look_at(take, a, b, smallest));
+  const std::vector<double> bounds = partner_bounds(pairs, take.joints());
+  std::erase_if(pairs, [&](const Pair& pair) {
+    const RigidEdge& e = pair.edge;
+    return !std::isfinite(e.spread) ||
+           e.spread > std::max(bounds[static_cast<std::size_t>(e.first)],
+                               bounds[static_cast<std::size_t>(e.second)]);
+  });
+  for (const Pair& pair : pairs)
+    if (pair.edge.hard)
+      for (const Index j : {pair.edge.first, pair.edge.second})
+        body.judged[static_cast<std::size_t>(j)] = true;
+  const bool rigid = std::ranges::any_of(pairs, [](const Pair& p) { return p.edge.hard; });
+  const auto judged = [&](Index j) { return body.judged[static_cast<std::size_t>(j)]; };
+  for (const Pair& pair : pairs) {
+    const auto& [first, second, length, spread, hard, exact] = pair.edge;
+    if (rigid && pair.steady && (judged(first) || judged(second))) body.edges.push_back(pair.edge);
+    if (!rigid && pair.tail_spread < soft_edge * size)
+      body.edges.push_back({first, second, length, spread, false, true});
+  }
+  return body;
+}
+
+}  // namespace moclean

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "moclean/body/rigid_edges.hpp"
+
+namespace moclean {
+
+/// What the distances between joints say of every joint in every frame, [frames x joints].
+struct RigidFlags {
+  Mask bad;         ///< wrong: to blame for distances that are off
+  Mask vouched;     ///< right: two rigid distances or more say so, and none the contrary
+  Mask consistent;  ///< as vouched, but one distance is enough where a joint has no more
+};
+
+/// Compares the distances of a take with those of its body. In every frame the joint with the
+/// largest weighted share of wrong distances is blamed and left out, again and again, as long as
+/// that share exceeds 0.4: a knee has two exact distances of equal weight, one of which may be
+/// right by coincidence. Where dense noise hides small errors, lasting ones are looked for in
+/// running medians of the distances, too. `size` is body_size(take).
+RigidFlags judge(const BodyTake& take, const RigidBody& body, double size, double smallest);
+
+}  // namespace moclean

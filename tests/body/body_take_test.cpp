@@ -1,0 +1,82 @@
+#include "moclean/body/body_take.hpp"
+
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "moclean/body/vanished.hpp"
+#include "moclean/core/error.hpp"
+
+#include "support/limbs.hpp"
+
+namespace moclean {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+TEST(BodyTake, SeesAJointWhoseThreeCoordinatesAreThere) {
+  Matrix samples(2, 6);
+  samples << 1, 2, 3, 4, 5, 6,  //
+      1, nan, 3, 4, 5, 6;
+
+  const BodyTake take = body_take(samples, 120);
+
+  EXPECT_TRUE(take.seen(0, 0) && take.seen(0, 1) && take.seen(1, 1));
+  EXPECT_FALSE(take.seen(1, 0));
+  EXPECT_EQ(take.positions(1, 1), 0);
+}
+
+TEST(BodyTake, RefusesColumnsThatAreNoJoints) {
+  EXPECT_THROW(body_take(Matrix::Zero(3, 4), 120), ShapeError);
+}
+
+TEST(OddFrames, AreTheNearestOddNumber) {
+  EXPECT_EQ(odd_frames(0.058, 120), 7);   // 6.96 frames
+  EXPECT_EQ(odd_frames(0.092, 120), 11);  // 11.04
+  EXPECT_EQ(odd_frames(0.058, 25), 3);    // 1.45, but no fewer than 3
+  EXPECT_EQ(odd_frames(0.058, 250), 15);  // 14.5
+}
+
+TEST(BodySize, IsTheMedianDistanceFromTheMedianJoint) {
+  Matrix samples(1, 9);
+  samples << 0, 0, 0, 3, 4, 0, -3, -4, 0;  // median joint 0: distances 0, 5, 5
+
+  EXPECT_DOUBLE_EQ(body_size(body_take(samples, 120)), 5);
+}
+
+TEST(Vanished, FindsJointsAtTheOrigin) {
+  Matrix samples = test::swinging_limbs(60, 6);
+  samples.row(10).segment<3>(6).setZero();
+
+  const Mask lost = vanished(body_take(samples, 120));
+
+  EXPECT_TRUE(lost(10, 2));
+  EXPECT_EQ(lost.count(), 1);
+}
+
+TEST(Vanished, FindsZerosUnderNoise) {
+  Matrix samples = test::swinging_limbs(200, 8);
+  Random random(3);
+  Mask dropped = Mask::Constant(200, 8, false);
+  for (Index i = 0; i < 200; ++i)
+    for (Index j = 0; j < 8; ++j)
+      if (random.uniform() < 0.3) {
+        dropped(i, j) = true;
+        for (Index c = 0; c < 3; ++c) samples(i, 3 * j + c) = 0.05 * random.normal();
+      }
+
+  const Mask lost = vanished(body_take(samples, 120));
+
+  EXPECT_TRUE((lost == dropped).all());
+}
+
+TEST(Vanished, TakesNoMotionForLostJoints) {
+  const Matrix motion = test::swinging_limbs(200, 8);
+  const Matrix centred = motion.rowwise() - motion.colwise().mean();
+
+  EXPECT_FALSE(vanished(body_take(motion, 120)).any());
+  EXPECT_FALSE(vanished(body_take(centred, 120)).any());
+}
+
+}  // namespace
+}  // namespace moclean

@@ -1,0 +1,133 @@
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "moclean/body/jump_flags.hpp"
+#include "moclean/body/rigid_flags.hpp"
+
+#include "support/limbs.hpp"
+
+namespace moclean {
+namespace {
+
+constexpr Index frames = 400, joints = 9;
+constexpr double edge_floor = 1e-4;
+
+// A take and what is learned from it.
+struct Learned {
+  explicit Learned(const Matrix& samples)
+      : take(body_take(samples, 120)),
+        size(body_size(take)),
+        smallest(edge_floor * size),
+        body(learn_rigid_body(take, size, smallest)) {}
+
+  RigidFlags flags() const { return judge(take, body, size, smallest); }
+
+  BodyTake take;
+  double size, smallest;
+  RigidBody body;
+};
+
+// Random displacements of the whole samples of one joint.
+Matrix displaced(Index joint, Index first, Index last, const Eigen::RowVector3d& by) {
+  Matrix samples = test::swinging_limbs(frames, joints);
+  samples.middleRows(first, last - first).middleCols(3 * joint, 3).rowwise() += by;
+  return samples;
+}
+
+TEST(SteadyCore, IsTheShortestIntervalThatHoldsAThird) {
+  std::vector<double> values;
+  for (int i = 0; i < 15; ++i) values.push_back(5 + 0.01 * i);
+  for (int i = 0; i < 15; ++i) values.push_back(20 + 3. * i);
+
+  const Core core = steady_core(values);
+
+  EXPECT_GE(core.centre, 5.05 - 1e-9);  // ten steps of 0.01 within 5 .. 5.14
+  EXPECT_LE(core.centre, 5.09 + 1e-9);
+  EXPECT_NEAR(core.spread, 0.05 / 0.4307, 1e-9);
+}
+
+TEST(SteadyCore, KnowsNothingFromTwentyValues) {
+  std::vector<double> values(20, 1.);
+
+  EXPECT_TRUE(std::isinf(steady_core(values).spread));
+}
+
+TEST(RigidBody, FindsTheBones) {
+  const Learned learned(test::swinging_limbs(frames, joints));
+
+  int bones = 0;
+  for (const RigidEdge& edge : learned.body.edges) {
+    if (!edge.exact) continue;
+    ++bones;
+    EXPECT_EQ(edge.first, (edge.second - 1) / 2);
+    EXPECT_NEAR(edge.length, 1 + 0.1 * static_cast<double>(edge.second), 1e-9);
+  }
+  EXPECT_EQ(bones, joints - 1);
+  EXPECT_TRUE(learned.body.is_rigid());
+}
+
+TEST(RigidBody, OfSoftMarkersJudgesNobody) {
+  Matrix samples = test::swinging_limbs(frames, joints);
+  Random random(5);
+  for (Index i = 0; i < samples.rows(); ++i)  // skin that slides by up to 1 % slowly, each marker
+    for (Index j = 0; j < samples.cols(); ++j)
+      samples(i, j) += 0.03 * std::sin(0.05 * static_cast<double>(i) + static_cast<double>(7 * j));
+  const Learned learned(samples);
+
+  EXPECT_FALSE(learned.body.is_rigid());
+  EXPECT_FALSE(learned.flags().bad.any());
+}
+
+TEST(RigidFlags, BlameTheJointThatIsDisplacedAndNoOther) {
+  const Learned learned(displaced(4, 100, 130, {0.8, -0.5, 0.4}));
+
+  const RigidFlags flags = learned.flags();
+
+  EXPECT_EQ(flags.bad.count(), flags.bad.col(4).count());
+  EXPECT_TRUE(flags.bad.col(4).segment(100, 30).all());
+  EXPECT_LE(flags.bad.col(4).count(), 34);  // holes are closed over a few frames at the ends
+  EXPECT_FALSE((flags.bad && flags.vouched).any());
+}
+
+TEST(RigidFlags, HoldForAnyUnitOfLength) {
+  const Matrix samples = displaced(4, 100, 130, {0.8, -0.5, 0.4});
+  const Learned metres(samples), millimetres(1000 * samples);
+
+  EXPECT_TRUE((metres.flags().bad == millimetres.flags().bad).all());
+  EXPECT_TRUE((metres.flags().vouched == millimetres.flags().vouched).all());
+}
+
+TEST(RigidFlags, SayNothingOfMissingJoints) {
+  Matrix samples = test::swinging_limbs(frames, joints);
+  samples.middleRows(50, 40).middleCols(9, 3).setConstant(std::numeric_limits<double>::quiet_NaN());
+  const Learned learned(samples);
+
+  EXPECT_FALSE(learned.flags().bad.any());
+  EXPECT_FALSE(learned.flags().vouched.col(3).segment(50, 40).any());
+}
+
+TEST(JumpFlags, FindALimbThatLeavesAsAWholeAndComesBack) {
+  // Joint 3 and those that hang on it, 7 and 8, leave together: their bones keep their lengths.
+  Matrix samples = test::swinging_limbs(frames, joints);
+  for (const Index j : {3, 7, 8})
+    samples.middleRows(200, 50).middleCols(3 * j, 3).rowwise() += Eigen::RowVector3d(2, 1, -1.5);
+  const Learned learned(samples);
+  const Mask all = Mask::Constant(frames, joints, true);
+
+  const Mask jumps = jump_flags(learned.take, all, learned.body, learned.size);
+
+  for (const Index j : {3, 7, 8}) EXPECT_TRUE(jumps.col(j).segment(200, 50).all()) << j;
+  EXPECT_EQ(jumps.count(), 150);
+}
+
+TEST(JumpFlags, AreNotRaisedByMotion) {
+  const Learned learned(test::swinging_limbs(frames, joints));
+  const Mask all = Mask::Constant(frames, joints, true);
+
+  EXPECT_FALSE(jump_flags(learned.take, all, learned.body, learned.size).any());
+}
+
+}  // namespace
+}  // namespace moclean
