@@ -43,7 +43,7 @@ may_catch=(
   'moclean/device/kernel.cpp: turns a failed build into a DeviceError that holds the log'
   'moclean/device/device.cpp: an ICD without platforms or devices throws; that is an empty list'
   'moclean/experiment/grid_config.cpp: gives the error of a specification its file and line'
-  'moclean/solve/reference/reference_backend.cpp: carries an exception from a thread to the caller'
+  'moclean/core/parallel.hpp: carries an exception from a thread to the caller'
   'moclean/solve/opencl/concurrent.cpp: carries the first exception of its threads to the caller'
 )
 

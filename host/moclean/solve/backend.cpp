@@ -38,6 +38,8 @@ bool accepts_missing(const Method& method) {
       method);
 }
 
+bool tells_trust(const Method& method) { return std::holds_alternative<MatrixNormal>(method); }
+
 void require_finite(const SegmentBatch& data) { require_entries(data, false); }
 
 void require_usable(const SegmentBatch& data, const Method& method) {

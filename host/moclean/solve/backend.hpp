@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <variant>
@@ -8,6 +9,7 @@
 
 #include "moclean/core/segment_batch.hpp"
 #include "moclean/solve/matrix_completion.hpp"
+#include "moclean/solve/matrix_normal.hpp"
 #include "moclean/solve/robust_pca.hpp"
 #include "moclean/solve/singular_value_thresholding.hpp"
 #include "moclean/solve/temporal_robust_pca.hpp"
@@ -17,10 +19,13 @@ namespace moclean {
 
 /// What is computed. A method missing on one backend does not compile (std::visit).
 using Method = std::variant<RobustPca, TruncatedSvd, SingularValueThresholding, MatrixCompletion,
-                            TemporalRobustPca>;
+                            TemporalRobustPca, MatrixNormal>;
 
 /// Whether a method takes NaN as "not observed"; the others need every sample.
 bool accepts_missing(const Method& method);
+
+/// Whether a method tells which samples it used, and how far it may be off.
+bool tells_trust(const Method& method);
 
 /// How the solution of one segment came about.
 struct SegmentOutcome {
@@ -34,11 +39,14 @@ struct SegmentOutcome {
 };
 
 /// D = low_rank + sparse, segment by segment, in the layout of the data; where D is NaN, sparse is
-/// 0.
+/// 0. Matrix-normal smoothing takes noise away besides, which is in neither.
 struct Solution {
   SegmentBatch low_rank;  ///< A
   SegmentBatch sparse;    ///< E
   std::vector<SegmentOutcome> segments;
+  // Of methods that tell, see tells_trust():
+  std::optional<SegmentBatch> trusted = {};    ///< 1 where a sample was used, else 0
+  std::optional<SegmentBatch> deviation = {};  ///< standard deviation of the motion
 };
 
 /// Segments finished so far, of how many.

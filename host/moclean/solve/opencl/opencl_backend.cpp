@@ -9,6 +9,7 @@
 #include "moclean/solve/missing.hpp"
 #include "moclean/solve/opencl/concurrent.hpp"
 #include "moclean/solve/opencl/matrix_completion.hpp"
+#include "moclean/solve/opencl/matrix_normal.hpp"
 #include "moclean/solve/opencl/robust_pca.hpp"
 #include "moclean/solve/opencl/spectral.hpp"
 #include "moclean/solve/opencl/temporal_robust_pca.hpp"
@@ -64,6 +65,11 @@ class OpenClBackend::Worker {
     if (!temporal_) temporal_.emplace(device_, tuning_);
     use(*temporal_);
   }
+  template <class Use>
+  void with(const MatrixNormal&, const Use& use) {
+    if (!matrix_normal_) matrix_normal_.emplace(device_, tuning_);
+    use(*matrix_normal_);
+  }
   template <class Spectral, class Use>
   void with(const Spectral&, const Use& use) {
     if (!spectral_) spectral_.emplace(device_, tuning_);
@@ -87,6 +93,7 @@ class OpenClBackend::Worker {
   std::optional<opencl::SpectralSolver> spectral_;
   std::optional<opencl::MatrixCompletionSolver> completion_;
   std::optional<opencl::TemporalRobustPcaSolver> temporal_;
+  std::optional<opencl::MatrixNormalSolver> matrix_normal_;
 };
 
 OpenClBackend::OpenClBackend(const Device& device, const OpenClOptions& options)
@@ -174,6 +181,10 @@ Solution OpenClBackend::solve(const SegmentBatch& data, const Method& method,
   Solution solution{SegmentBatch(data.columns(), data.first_rows()),
                     SegmentBatch(data.columns(), data.first_rows()),
                     std::vector<SegmentOutcome>(static_cast<std::size_t>(data.segments()))};
+  if (tells_trust(method)) {
+    solution.trusted.emplace(data.columns(), data.first_rows());
+    solution.deviation.emplace(data.columns(), data.first_rows());
+  }
   Progress progress{.finished = 0, .total = data.segments()};
   std::mutex reporting;
   const auto finished = [&](Index count) {

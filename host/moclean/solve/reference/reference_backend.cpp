@@ -1,15 +1,13 @@
 #include "moclean/solve/reference/reference_backend.hpp"
 
-#include <algorithm>
-#include <atomic>
-#include <exception>
 #include <mutex>
-#include <thread>
 
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/core/parallel.hpp"
 #include "moclean/solve/reference/matrix_completion.hpp"
+#include "moclean/solve/reference/matrix_normal.hpp"
 #include "moclean/solve/reference/robust_pca.hpp"
 #include "moclean/solve/reference/spectral.hpp"
 #include "moclean/solve/reference/temporal_robust_pca.hpp"
@@ -17,26 +15,13 @@
 namespace moclean {
 namespace {
 
-// Calls work(0) .. work(count - 1), each once, on up to `jobs` threads, the calling one included.
-// After an exception no further call is started; the first one is rethrown when all have ended.
-template <class Work>
-void for_each_index(Index count, int jobs, const Work& work) {
-  std::atomic<Index> next = 0;
-  std::atomic<bool> failed = false;
-  std::exception_ptr failure;
-  const auto run = [&] {
-    try {
-      for (Index i = next++; i < count && !failed; i = next++) work(i);
-    } catch (...) {
-      if (!failed.exchange(true)) failure = std::current_exception();
-    }
-  };
-  {
-    std::vector<std::jthread> others;
-    for (Index t = 1; t < std::min<Index>(jobs, count); ++t) others.emplace_back(run);
-    run();
-  }
-  if (failure) std::rethrow_exception(failure);
+template <class M>
+auto solve_segment(const SegmentBatch& data, Index b, const M& method,
+                   const std::stop_token& stop) {
+  if constexpr (std::is_same_v<M, MatrixNormal>)
+    return reference::solve(data.segment(b), method, stop, b);
+  else
+    return reference::solve(data.segment(b), method, stop);
 }
 
 }  // namespace
@@ -58,6 +43,10 @@ Solution ReferenceBackend::solve(const SegmentBatch& data, const Method& method,
   Solution solution;
   solution.low_rank = SegmentBatch(data.columns(), data.first_rows());
   solution.sparse = SegmentBatch(data.columns(), data.first_rows());
+  if (tells_trust(method)) {
+    solution.trusted.emplace(data.columns(), data.first_rows());
+    solution.deviation.emplace(data.columns(), data.first_rows());
+  }
   solution.segments.resize(static_cast<std::size_t>(data.segments()));
   std::mutex reporting;
   Progress progress{.finished = 0, .total = data.segments()};
@@ -65,9 +54,13 @@ Solution ReferenceBackend::solve(const SegmentBatch& data, const Method& method,
   for_each_index(data.segments(), jobs_, [&](Index b) {
     std::visit(
         [&](const auto& m) {
-          const auto segment = reference::solve(data.segment(b), m, monitor.stop);
+          const auto segment = solve_segment(data, b, m, monitor.stop);
           solution.low_rank.segment(b) = segment.low_rank;
           solution.sparse.segment(b) = segment.sparse;
+          if constexpr (requires { segment.trusted; }) {
+            solution.trusted->segment(b) = segment.trusted;
+            solution.deviation->segment(b) = segment.deviation;
+          }
           solution.segments[static_cast<std::size_t>(b)] = segment.outcome;
         },
         method);

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "moclean/core/parameters.hpp"
+
+namespace moclean {
+
+/// Two joints, runs of MatrixNormal::joint_columns columns, whose distance is constant.
+struct DistanceLink {
+  Index first = 0;
+  Index second = 0;
+  double length = 0;   ///< unit of the data
+  bool hard = false;   ///< constant up to the noise: joints at its ends move together
+  bool exact = false;  ///< a length to build on in gaps
+
+  bool operator==(const DistanceLink&) const = default;
+};
+
+/// What is known of one segment beside its samples.
+struct JointKnowledge {
+  double size = 0;    ///< unit of the floors of noise, a body's size; above 0
+  Mask vouched = {};  ///< [frames x joints]: samples the links say are right; or empty
+  std::vector<DistanceLink> links = {};
+
+  bool operator==(const JointKnowledge& other) const;
+};
+
+/// Robust smoothing under a matrix-normal model of motion: the accelerations (second differences
+/// over the frames, rows of Delta S) are normal with a full covariance Q over all columns, learned
+/// from the data itself; samples have normal noise of deviation sigma, and gross errors:
+///   minimise  sum W_ij (D_ij - S_ij)^2 / (2 v_ij) + tr(Delta S Q^-1 (Delta S)') / 2
+/// where W is 0 for missing and rejected samples. Q, sigma and W follow from S and S from them, in
+/// turn: first `soft_steps` with Geman-McClure weights of a falling threshold, then `hard_steps`
+/// with rejection and an evidence update (MacKay 1992) of Q and sigma. No singular values of the
+/// data are taken. Lengths scale: c D has the motion c S.
+///
+/// Missing samples (NaN) are filled. A column without any sample comes out as NaN.
+struct MatrixNormal {
+  static constexpr bool accepts_missing = true;
+
+  Index joint_columns = 3;    ///< neighbouring columns that fail together: x, y, z; at least 1
+  Index median_frames = 7;    ///< window of the first guess, odd
+  Index lag_frames = 8;       ///< of the differences that tell acceleration from noise, at least 1
+  int soft_steps = 6;         ///< at least 1
+  int hard_steps = 4;         ///< at least 1
+  double soft_first = 8;      ///< threshold of the first soft step, predictive deviations, > 0
+  double soft_last = 4;       ///< and of the last
+  double hard = 6;            ///< samples farther than this are rejected, predictive deviations
+  int solve_iterations = 10;  ///< most conjugate gradient iterations of a step, at least 1
+  double solve_tolerance = 1e-6;  ///< of a step: on the residual, relative to that of S = 0
+  std::vector<JointKnowledge> knowledge = {};  ///< per segment; empty: none of any
+
+  bool operator==(const MatrixNormal&) const = default;
+
+  static constexpr std::string_view name = "matrix-normal";
+  static void visit(auto& self, auto& visitor) {
+    visitor("joint-columns", self.joint_columns);
+    visitor("median-frames", self.median_frames);
+    visitor("lag-frames", self.lag_frames);
+    visitor("soft-steps", self.soft_steps);
+    visitor("hard-steps", self.hard_steps);
+    visitor("soft-first", self.soft_first);
+    visitor("soft-last", self.soft_last);
+    visitor("hard", self.hard);
+    visitor("solve-iterations", self.solve_iterations);
+    visitor("solve-tolerance", self.solve_tolerance);
+  }
+};
+
+/// Throws ArgumentError naming the first parameter out of its range.
+void check(const MatrixNormal& method);
+
+}  // namespace moclean

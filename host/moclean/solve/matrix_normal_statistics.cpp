@@ -1,0 +1,86 @@
+#include "moclean/solve/matrix_normal_statistics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "moclean/core/order_statistics.hpp"
+
+namespace moclean {
+namespace {
+
+// The finite ones among `values`.
+std::vector<double> observed_of(const auto& values) {
+  std::vector<double> found;
+  for (const double x : values)
+    if (!std::isnan(x)) found.push_back(x);
+  return found;
+}
+
+}  // namespace
+
+double column_scale(const ConstMatrixRef& data) {
+  std::vector<double> spreads;
+  double largest = std::numeric_limits<double>::min();
+  for (Index j = 0; j < data.cols(); ++j) {
+    std::vector<double> values = observed_of(data.col(j));
+    if (values.empty()) continue;
+    const double middle = median(values);
+    for (double& x : values) {
+      largest = std::max(largest, std::abs(x));
+      x = std::abs(x - middle);
+    }
+    spreads.push_back(median(values));
+  }
+  const double scale = spreads.empty() ? 0 : 3 * deviation_per_mad * median(spreads);
+  return scale > 0 ? scale : largest;
+}
+
+double dense_noise_level(const ConstMatrixRef& data) {
+  // The lower quartile of |x| of a standard normal x; sum of the squared binomials 1 4 6 4 1.
+  constexpr double quartile = 0.3186, squares = 70;
+  std::vector<double> differences;
+  for (Index i = 0; i + 4 < data.rows(); ++i)
+    for (Index j = 0; j < data.cols(); ++j) {
+      const double d = data(i, j) - 4 * data(i + 1, j) + 6 * data(i + 2, j) - 4 * data(i + 3, j) +
+                       data(i + 4, j);
+      if (!std::isnan(d)) differences.push_back(std::abs(d));
+    }
+  if (differences.size() <= 50) return 0;
+  return quantile(differences, 0.25) / quartile / std::sqrt(squares);
+}
+
+Matrix reach(const ConstMatrixRef& weights) {
+  constexpr double in_use = 0.3;
+  constexpr double beyond_end = 3;
+  const Index frames = weights.rows();
+  Matrix h(frames, weights.cols());
+  // First the distance to the sample before, negative for "none", then both together.
+  for (Index j = 0; j < weights.cols(); ++j) {
+    double a = beyond_end + 1;
+    for (Index i = 0; i < frames; ++i, ++a) {
+      h(i, j) = a;
+      if (weights(i, j) > in_use) a = 0;
+    }
+    double b = beyond_end + 1;
+    for (Index i = frames - 1; i >= 0; --i, ++b) {
+      h(i, j) = 2 * h(i, j) * b / (h(i, j) + b);
+      if (weights(i, j) > in_use) b = 0;
+    }
+  }
+  return h;
+}
+
+void raise_to_joint_median(Matrix& energies, Index joint_columns) {
+  if (joint_columns == 1) return;
+  std::vector<double> joint;
+  for (Index i = 0; i < energies.rows(); ++i)
+    for (Index j = 0; j < energies.cols(); j += joint_columns) {
+      auto entries = energies.row(i).segment(j, std::min(joint_columns, energies.cols() - j));
+      joint.assign(entries.begin(), entries.end());
+      entries = entries.cwiseMax(median(joint));
+    }
+}
+
+}  // namespace moclean

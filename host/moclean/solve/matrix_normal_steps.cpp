@@ -1,0 +1,303 @@
+// Notation: D data, S motion, W weights, v variance of a sample, Q covariance of the accelerations
+// with eigenvalues e, R about Q^-1; see solve/matrix_normal.hpp.
+#include "moclean/solve/matrix_normal_steps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <vector>
+
+#include "moclean/core/linear_fill.hpp"
+#include "moclean/core/order_statistics.hpp"
+#include "moclean/solve/matrix_normal_statistics.hpp"
+
+namespace moclean {
+namespace {
+
+constexpr double soft_ridge = 2e-2, hard_ridge = 1e-3;  // share of the mean eigenvalue of Q
+constexpr double noise_floor_share = 1.25e-5;  // least sigma of the hard steps, of the size
+constexpr double soft_floor_share = 0.1;       // of the soft ones, of that
+constexpr double dense_noise = 10. / 6;        // sigma^2 over mean e from which smoothing is undone
+constexpr double most_stiffness = 1e3;
+constexpr double clip_deviations = 5, near_deviations = 3;
+constexpr double length_weight = 0.1, length_reach = 4;  // of drawn joints; frames
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+
+double square(double x) { return x * x; }
+
+// Variance of what samples at the harmonic distance h predict, 1 / R_jj being 1: a second
+// difference between neighbours, a random walk of velocities over a gap.
+double open_variance(double h) { return std::max(h / 6, h * h * h / 24); }
+
+}  // namespace
+
+double kept_power(double noise, double power) {
+  return (1. / std::sqrt(std::complex(1., 4 * std::sqrt(noise / power)))).real();
+}
+
+MatrixNormalWindow::MatrixNormalWindow(const ConstMatrixRef& data, const MatrixNormal& method,
+                                       Index segment)
+    : method_(method), frames_(data.rows()) {
+  if (!method.knowledge.empty()) known_ = method.knowledge[static_cast<std::size_t>(segment)];
+  method_.knowledge.clear();
+  const Index rows = std::max(data.rows(), data.cols());
+  const Mask seen = !data.array().isNaN();
+  data_ = Matrix::Zero(rows, data.cols());
+  data_.topRows(frames_) = seen.select(data, 0);
+  observed_ = seen.cast<double>();
+  const double size = known_.size > 0 ? known_.size : column_scale(data);
+  noise_floor_ = noise_floor_share * size;
+  sigma_ = std::max(dense_noise_level(data), soft_floor_share * noise_floor_);
+  weights_ = observed_;
+  target_ = data_;
+}
+
+// Second differences over a lag of h frames tell the acceleration under dense noise: their variance
+// is 6 sigma^2 + h^4 q. Without dense noise the stiffness is 1.
+MatrixNormalWindow::FirstGuess MatrixNormalWindow::first_guess() const {
+  FirstGuess guess{data_, Eigen::VectorXd::Ones(columns())};
+  const Index h = std::min(method_.lag_frames, (frames_ - 1) / 2), count = frames_ - 2 * h;
+  std::vector<double> lags;
+  for (Index j = 0; j < columns(); ++j) {
+    std::vector<double> channel = filled(j);
+    const Eigen::Map<Eigen::VectorXd> values(channel.data(), frames_);
+    const Eigen::ArrayXd lag =
+        (values.head(count) - 2 * values.segment(h, count) + values.tail(count)).array().abs();
+    lags.assign(lag.begin(), lag.end());
+    const double power = square(deviation_per_mad * median(lags)) - 6 * square(sigma_);
+    const double q = std::max(power, 0.0) / std::pow(h, 4) + std::numeric_limits<double>::min();
+    guess.stiffness(j) = std::clamp(square(sigma_) / q, 1.0, most_stiffness);
+    running_median(channel, method_.median_frames);
+    guess.motion.col(j).head(frames_) = values;
+    guess.motion.col(j).tail(rows() - frames_).setConstant(values(frames_ - 1));
+  }
+  return guess;
+}
+
+Matrix MatrixNormalWindow::accelerations(const ConstMatrixRef& motion) const {
+  const Index count = frames_ - 2;
+  Matrix a = Matrix::Zero(rows(), columns());
+  a.topRows(count) =
+      motion.topRows(count) - 2 * motion.middleRows(1, count) + motion.middleRows(2, count);
+  if (hard()) return a;
+  std::vector<double> magnitudes(static_cast<std::size_t>(count));
+  Eigen::Map<Eigen::ArrayXd> sizes(magnitudes.data(), count);
+  for (Index j = 0; j < columns(); ++j) {
+    auto column = a.col(j).head(count);
+    sizes = column.array().abs();
+    const double middle = deviation_per_mad * median(magnitudes);
+    const double spread =
+        std::sqrt(column.array().min(6 * middle).max(-6 * middle).square().mean());
+    const double bound = clip_deviations * std::max(middle, spread / 2);
+    column = column.array().min(bound).max(-bound);
+  }
+  return a;
+}
+
+double MatrixNormalWindow::share_kept() const { return std::max(weights_.mean(), 1e-3); }
+
+double MatrixNormalWindow::least_spectrum() const {
+  const double least = hard() ? 1e-5 * spectrum_.mean() : 1e-9 * spectrum_.maxCoeff();
+  return least + std::numeric_limits<double>::min();
+}
+
+std::optional<Eigen::VectorXd> MatrixNormalWindow::growth() const {
+  if (step_ == 0) return {};
+  const double variance = square(sigma_), least = least_spectrum();
+  if (!hard() && variance <= dense_noise * spectrum_.mean()) return {};
+  const double noise = hard() ? variance / share_kept() : variance;
+  return spectrum_.unaryExpr(
+      [&](double e) { return 1 / std::sqrt(kept_power(noise, std::max(e, least))); });
+}
+
+Eigen::VectorXd MatrixNormalWindow::inverse_spectrum(const Eigen::VectorXd& eigenvalues) {
+  const Eigen::VectorXd e = eigenvalues.cwiseMax(0) / static_cast<double>(frames_ - 2);
+  const double ridge = (hard() ? hard_ridge : soft_ridge) * e.mean();
+  spectrum_ = e.array() + ridge + square(soft_floor_share * noise_floor_);
+  return spectrum_.cwiseInverse();
+}
+
+// Squared residuals in predictive deviations: the larger of the entry's own and the median of its
+// joint's.
+Matrix MatrixNormalWindow::energies(const ConstMatrixRef& motion) const {
+  Matrix energy(frames_, columns());
+  const Matrix h = reach(weights_);
+  for (Index i = 0; i < frames_; ++i)
+    for (Index j = 0; j < columns(); ++j)
+      energy(i, j) = observed_(i, j) * square(data_(i, j) - motion(i, j)) /
+                     (square(sigma_) + h(i, j) * predictive_(j) / 6);
+  raise_to_joint_median(energy, method_.joint_columns);
+  return energy;
+}
+
+void MatrixNormalWindow::weigh(const ConstMatrixRef& motion,
+                               const Eigen::VectorXd& inverse_diagonal) {
+  predictive_ = inverse_diagonal.cwiseInverse();
+  const Matrix energy = energies(motion);
+  solve_weights_ = Matrix::Zero(rows(), columns());
+  target_changed_ = step_ == 0;
+  if (hard())
+    weigh_hard(energy, motion);
+  else
+    weigh_softly(energy);
+}
+
+// Geman-McClure weights.
+void MatrixNormalWindow::weigh_softly(const Matrix& energy) {
+  const double place =
+      method_.soft_steps > 1 ? static_cast<double>(step_) / (method_.soft_steps - 1) : 1;
+  const double cut = method_.soft_first * std::pow(method_.soft_last / method_.soft_first, place);
+  for (Index i = 0; i < frames_; ++i)
+    for (Index j = 0; j < columns(); ++j) {
+      weights_(i, j) = observed_(i, j) / square(1 + energy(i, j) / square(cut));
+      solve_weights_(i, j) = weights_(i, j) / (square(sigma_) + predictive_(j) / 6);
+    }
+}
+
+void MatrixNormalWindow::weigh_hard(const Matrix& energy, const ConstMatrixRef& motion) {
+  Mask good = energy.array() < square(method_.hard);
+  if (known_.vouched.size() > 0) reinstate(good);
+  weights_ = good.select(observed_, 0);
+  solve_weights_.topRows(frames_) = weights_ / square(sigma_);
+  const bool exact = std::ranges::any_of(known_.links, [](const auto& l) { return l.exact; });
+  if (exact) build_on_lengths(motion);
+}
+
+// A vouched joint that would be rejected together with two vouched joints linked to it is not.
+void MatrixNormalWindow::reinstate(Mask& good) const {
+  const Index joints = known_.vouched.cols(), width = method_.joint_columns;
+  Mask out(frames_, joints);
+  for (Index j = 0; j < joints; ++j)
+    out.col(j) = known_.vouched.col(j) && !good.middleCols(j * width, width).rowwise().all();
+  Eigen::Array<int, Eigen::Dynamic, Eigen::Dynamic> linked =
+      Eigen::Array<int, Eigen::Dynamic, Eigen::Dynamic>::Zero(frames_, joints);
+  for (const DistanceLink& link : known_.links) {
+    if (!link.hard) continue;
+    linked.col(link.first) += out.col(link.second).cast<int>();
+    linked.col(link.second) += out.col(link.first).cast<int>();
+  }
+  for (Index j = 0; j < joints; ++j)
+    for (Index i = 0; i < frames_; ++i)
+      if (out(i, j) && linked(i, j) >= 2) good.row(i).segment(j * width, width).setConstant(true);
+}
+
+// In gaps longer than a few frames, S put on the exact lengths is as good as a sample of the
+// variance that the gap leaves open.
+void MatrixNormalWindow::build_on_lengths(const ConstMatrixRef& motion) {
+  const Index width = method_.joint_columns, joints = columns() / width;
+  const Matrix h = reach(weights_);
+  const Mask lost = weights_.array() <= 0;
+  Mask free(frames_, joints);
+  for (Index j = 0; j < joints; ++j)
+    free.col(j) = lost.middleCols(j * width, width).rowwise().any();
+  Matrix drawn = lost.select(motion.topRows(frames_), data_.topRows(frames_));
+  const Mask moved = put_on_lengths(known_.links, free, drawn);
+  target_ = data_;
+  target_changed_ = true;
+  for (Index i = 0; i < frames_; ++i)
+    for (Index j = 0; j < columns(); ++j) {
+      if (observed_(i, j) > 0 || h(i, j) <= length_reach || !moved(i, j / width)) continue;
+      target_(i, j) = drawn(i, j);
+      solve_weights_(i, j) =
+          length_weight / (square(sigma_) + open_variance(h(i, j)) * predictive_(j));
+    }
+}
+
+void MatrixNormalWindow::estimate_noise(const ConstMatrixRef& motion) {
+  std::vector<double> residuals;
+  for (Index i = 0; i < frames_; ++i)
+    for (Index j = 0; j < columns(); ++j) {
+      const double r = std::abs(data_(i, j) - motion(i, j));
+      const double near = near_deviations * std::sqrt(square(sigma_) + predictive_(j) / 6);
+      const bool counts = hard() ? weights_(i, j) > 0 : observed_(i, j) > 0 && r < near;
+      if (counts) residuals.push_back(r);
+    }
+  if (hard() && !residuals.empty()) {
+    const double noise = square(sigma_) / share_kept(), least = least_spectrum();
+    double kept = 0;
+    for (const double e : spectrum_) kept += kept_power(noise, std::max(e, least));
+    const double fitted = static_cast<double>(frames_) * weights_.mean() * kept / weights_.sum();
+    const double free = std::sqrt(std::max(1 - fitted, 0.02));
+    sigma_ = std::max(deviation_per_mad * median(residuals) / free, noise_floor_);
+  } else if (2 * step_ >= method_.soft_steps && residuals.size() > 100) {
+    sigma_ = std::max(deviation_per_mad * median(residuals), soft_floor_share * noise_floor_);
+  }
+  ++step_;
+}
+
+Matrix MatrixNormalWindow::cleaned(const ConstMatrixRef& motion) const {
+  Matrix result = motion.topRows(frames_);
+  if (sigma_ <= noise_floor_) result = trusted().select(data_.topRows(frames_), result);
+  leave_unobserved(result);
+  return result;
+}
+
+void MatrixNormalWindow::leave_unobserved(Matrix& result) const {
+  for (Index j = 0; j < columns(); ++j)
+    if (observed_.col(j).sum() == 0) result.col(j).setConstant(missing);
+}
+
+// Column j of D, its gaps filled linearly.
+std::vector<double> MatrixNormalWindow::filled(Index j) const {
+  std::vector<double> channel(static_cast<std::size_t>(frames_));
+  Eigen::Map<Eigen::VectorXd>(channel.data(), frames_) = data_.col(j).head(frames_);
+  const Eigen::Array<bool, Eigen::Dynamic, 1> seen = observed_.col(j).array() > 0;
+  fill_linearly(channel, seen);
+  return channel;
+}
+
+Matrix MatrixNormalWindow::filled() const {
+  Matrix result(frames_, columns());
+  for (Index j = 0; j < columns(); ++j) {
+    const std::vector<double> channel = filled(j);
+    result.col(j) = Eigen::Map<const Eigen::VectorXd>(channel.data(), frames_);
+  }
+  leave_unobserved(result);
+  return result;
+}
+
+Matrix MatrixNormalWindow::rejected(const ConstMatrixRef& cleaned) const {
+  const Mask gross = observed_.array() > 0 && weights_.array() <= 0;
+  return gross.select(data_.topRows(frames_) - cleaned, Matrix::Zero(frames_, columns()));
+}
+
+Mask MatrixNormalWindow::trusted() const { return weights_.array() > 0; }
+
+Matrix MatrixNormalWindow::deviation() const {
+  if (step_ == 0) return Matrix::Constant(frames_, columns(), missing);
+  Matrix result = reach(weights_);
+  for (Index j = 0; j < columns(); ++j)
+    for (Index i = 0; i < frames_; ++i) {
+      const double open = open_variance(result(i, j)) * predictive_(j);
+      const double noise = square(sigma_);
+      result(i, j) = std::sqrt(weights_(i, j) > 0 ? open * noise / (open + noise) : open);
+    }
+  leave_unobserved(result);
+  return result;
+}
+
+Mask put_on_lengths(const std::vector<DistanceLink>& links, const Mask& free, Matrix& positions) {
+  constexpr int sweeps = 5;
+  Mask moved = Mask::Constant(free.rows(), free.cols(), false);
+  for (int sweep = 0; sweep < sweeps; ++sweep)
+    for (const DistanceLink& link : links) {
+      if (!link.exact) continue;
+      for (Index i = 0; i < free.rows(); ++i) {
+        const int ends = free(i, link.first) + free(i, link.second);
+        if (ends == 0) continue;
+        auto a = positions.row(i).segment<3>(3 * link.first);
+        auto b = positions.row(i).segment<3>(3 * link.second);
+        const Eigen::RowVector3d way = a - b;
+        const double length = std::max(way.norm(), std::numeric_limits<double>::min());
+        const Eigen::RowVector3d step = (1 - link.length / length) / ends * way;
+        if (free(i, link.first)) a -= step;
+        if (free(i, link.second)) b += step;
+        moved(i, link.first) = moved(i, link.first) || free(i, link.first);
+        moved(i, link.second) = moved(i, link.second) || free(i, link.second);
+      }
+    }
+  return moved;
+}
+
+}  // namespace moclean

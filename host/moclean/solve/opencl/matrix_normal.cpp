@@ -1,0 +1,300 @@
+// Notation as in solve/matrix_normal_steps.hpp and kernels/conjugate_gradients.cl: Q = A'A, Z its
+// eigenvectors in rows, R = Z' diag(f) Z about Q^-1, W weights over variances.
+#include "moclean/solve/opencl/matrix_normal.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "moclean/core/error.hpp"
+#include "moclean/device/kernel_source.hpp"
+#include "moclean/linalg/work.hpp"
+#include "moclean/solve/matrix_normal_steps.hpp"
+
+namespace moclean::opencl {
+namespace {
+
+constexpr Index stacked_matrices = 10, square_matrices = 3, vectors = 3;
+constexpr int chunk_rows = 32;  // with R's columns of a tile they fill a first-level cache
+
+// A window shorter than it is wide is extended until it is square.
+Index extended_rows(Index rows, Index columns) { return std::max(rows, columns); }
+
+SegmentBatch extended_shape(const SegmentBatch& data, Index first, Index last) {
+  std::vector<Index> first_rows = {0};
+  for (Index b = first; b < last; ++b)
+    first_rows.push_back(first_rows.back() + extended_rows(data.rows(b), data.columns()));
+  return {data.columns(), std::move(first_rows)};
+}
+
+}  // namespace
+
+// What one batch needs, on the device and beside it.
+struct MatrixNormalSolver::Run {
+  Run(const Device& device, const SegmentBatch& data, Index first, Index last,
+      const MatrixNormal& method)
+      : host(extended_shape(data, first, last)),
+        batch(device, host, 0, last - first),
+        D(device, batch.stacked_size()),
+        W(device, batch.stacked_size()),
+        S(device, batch.stacked_size()),
+        r(device, batch.stacked_size()),
+        z(device, batch.stacked_size()),
+        p(device, batch.stacked_size()),
+        p_before(device, batch.stacked_size()),
+        product(device, batch.stacked_size()),
+        inverse_pivot(device, batch.stacked_size()),
+        first_band(device, batch.stacked_size()),
+        Q(device, batch.square_size()),
+        Z(device, batch.square_size()),
+        R(device, batch.square_size()),
+        eigenvalues(device, batch.vector_size()),
+        f(device, batch.vector_size()),
+        stiffness(device, batch.vector_size()),
+        least(device, windows()),
+        rz(device, partial_sums(device)),
+        rz_before(device, partial_sums(device)),
+        bz(device, partial_sums(device)),
+        partial_pq(device, batch.block_count()),
+        scratch(device, batch.block_count() * static_cast<std::size_t>(chunk_rows * batch.pitch())),
+        terms(device, windows()),
+        iterations(device, windows()) {
+    // What no launch writes stays defined: padding, and the entries of windows not active.
+    for (auto* buffer : {&W, &S, &r, &z, &p, &p_before, &product, &Q, &Z, &R, &eigenvalues})
+      buffer->fill_zero();
+    iterations.fill_zero();
+    std::vector<std::int32_t> active;
+    for (Index b = first; b < last; ++b) {
+      steps.emplace_back(data.segment(b), method, b);
+      if (!steps.back().trivial()) active.push_back(static_cast<std::int32_t>(b - first));
+    }
+    batch.select(active);
+  }
+
+  std::size_t windows() const { return static_cast<std::size_t>(batch.segments()); }
+  std::size_t partial_sums(const Device& device) const {
+    return windows() * static_cast<std::size_t>(batch.pitch() / vector_width(device));
+  }
+  MatrixNormalWindow& window(std::int32_t b) { return steps[static_cast<std::size_t>(b)]; }
+
+  // Writes value_of(b) of every active window, [rows x columns].
+  template <class ValueOf>
+  void upload(const ValueOf& value_of, Buffer<double>& target) {
+    for (const std::int32_t b : batch.active()) host.segment(b) = value_of(b);
+    target.write(host.storage());
+  }
+
+  // Writes value_of(b), [columns], of every active window.
+  template <class ValueOf>
+  void upload_vector(const ValueOf& value_of, Buffer<double>& target) {
+    std::vector<double> values(batch.vector_size(), 0);
+    for (const std::int32_t b : batch.active()) vector_of(values, b) = value_of(b);
+    target.write(values);
+  }
+
+  // Writes the diagonal of R, and what keeps the preconditioner definite.
+  template <class ValueOf>
+  void set_stiffness(const ValueOf& value_of) {
+    std::vector<double> shares(windows(), 0);
+    for (const std::int32_t b : batch.active())
+      shares[static_cast<std::size_t>(b)] = least_preconditioner_weight * value_of(b).mean();
+    least.write(shares);
+    upload_vector(value_of, stiffness);
+  }
+
+  Eigen::Map<Eigen::VectorXd> vector_of(std::vector<double>& values, std::int32_t b) const {
+    return {values.data() + batch.segment(b).vector, batch.segment(b).order};
+  }
+
+  Eigen::Map<Eigen::VectorXd, 0, Eigen::InnerStride<>> diagonal_of(std::vector<double>& squares,
+                                                                   std::int32_t b) const {
+    const SegmentRecord& segment = batch.segment(b);
+    return {squares.data() + segment.square, segment.order,
+            Eigen::InnerStride<>(segment.order_pitch + 1)};
+  }
+
+  SegmentBatch host;  // stacked matrices on their way
+  Batch batch;
+  Buffer<double> D, W, S, r, z, p, p_before, product, inverse_pivot, first_band;
+  Buffer<double> Q, Z, R;
+  Buffer<double> eigenvalues, f, stiffness, least;
+  Buffer<double> rz, rz_before, bz, partial_pq, scratch;
+  Buffer<std::int32_t> terms, iterations;
+  std::vector<MatrixNormalWindow> steps;
+};
+
+MatrixNormalSolver::MatrixNormalSolver(const Device& device, const Tuning& tuning)
+    : device_(device),
+      products_((moclean::check(tuning), tuning.products), device, tuning),
+      eigen_(device, tuning),
+      program_(device, kernel_source::conjugate_gradients,
+               [&] {
+                 Defines defines = product_defines(device, NumberType::float64, tuning);
+                 defines["CHUNK"] = std::to_string(chunk_rows);
+                 return defines;
+               }()),
+      factor_(program_, "factor"),
+      start_(program_, "start"),
+      direction_(program_, "direction"),
+      update_(program_, "update") {}
+
+std::uint64_t MatrixNormalSolver::memory_of(Index rows, Index columns, const MatrixNormal&) const {
+  const Index pitch = padded(columns), extended = extended_rows(rows, columns);
+  const Index blocks = (extended + block_rows - 1) / block_rows;
+  const Index doubles = stacked_matrices * extended * pitch + square_matrices * columns * pitch +
+                        (vectors + 3) * pitch + blocks * (1 + chunk_rows * pitch);
+  return static_cast<std::uint64_t>(doubles) * sizeof(double) + eigen_.memory_of(columns) +
+         sizeof(SegmentRecord) + 4 * sizeof(double) +
+         static_cast<std::uint64_t>(blocks) * sizeof(BlockRecord);
+}
+
+// A to run.product: accelerations of the motion in run.host, grown where noise matters. Windows
+// that need no growth are left out of it: they do not depend on others, bit for bit.
+void MatrixNormalSolver::accelerate(Run& run) {
+  std::vector<double> weights(run.batch.vector_size(), 0);
+  std::vector<std::int32_t> growing;
+  for (const std::int32_t b : run.batch.active())
+    if (const auto growth = run.window(b).growth()) {
+      run.vector_of(weights, b) = *growth;
+      growing.push_back(b);
+    }
+  run.upload([&](std::int32_t b) { return run.window(b).accelerations(run.host.segment(b)); },
+             run.product);
+  if (growing.empty()) return;
+  run.r.write(run.host.storage());
+  run.f.write(weights);
+  const std::vector<std::int32_t> all(run.batch.active().begin(), run.batch.active().end());
+  run.batch.select(growing);
+  products_.reconstruct(run.batch, run.Z, run.f, run.terms, run.R);
+  products_.apply(run.batch, run.r, run.R, run.product);
+  run.batch.select(all);
+}
+
+// Q and R from the motion in run.host.
+void MatrixNormalSolver::learn(Run& run) {
+  accelerate(run);
+  products_.gram(run.batch, run.product, run.Q);
+  eigen_(run.batch, run.Q, run.Z, run.eigenvalues);
+  std::vector<double> values(run.batch.vector_size());
+  run.eigenvalues.read(values);
+  run.upload_vector(
+      [&](std::int32_t b) -> Eigen::VectorXd {
+        return run.window(b).inverse_spectrum(run.vector_of(values, b));
+      },
+      run.f);
+  products_.reconstruct(run.batch, run.Z, run.f, run.terms, run.R);
+}
+
+// S = argmin sum W (D - S)^2 + tr(Delta S R (Delta S)') from S on, by conjugate gradients.
+void MatrixNormalSolver::smooth(Run& run, const MatrixNormal& method) {
+  const Batch& batch = run.batch;
+  const Grid columns{.x = static_cast<std::size_t>(batch.pitch() / vector_width(device_)),
+                     .y = static_cast<std::size_t>(batch.active_count())};
+  factor_(columns, batch.device_segments(), batch.device_active(), run.W, run.stiffness, run.least,
+          run.inverse_pivot, run.first_band);
+  const auto search = [&](const Buffer<double>& z, double tolerance, bool begins) {
+    direction_.with([&] {
+      return total_work(batch, [](std::size_t, const SegmentRecord& s) { return apply_work(s); });
+    })(per_block(batch), batch.device_segments(), batch.device_blocks(), batch.active_blocks(),
+       run.W, run.R, z, run.p_before, run.rz, run.rz_before, run.bz, cl_double{tolerance},
+       cl_int{begins}, run.scratch, run.p, run.product, run.partial_pq, run.iterations);
+  };
+  search(run.S, -1, true);
+  start_(columns, batch.device_segments(), batch.device_active(), run.D, run.W, run.stiffness,
+         run.inverse_pivot, run.first_band, run.product, run.r, run.z, run.rz, run.bz);
+  for (int i = 0; i < method.solve_iterations; ++i) {
+    search(run.z, method.solve_tolerance, i == 0);
+    update_(columns, batch.device_segments(), batch.device_active(), run.stiffness,
+            run.inverse_pivot, run.first_band, run.p, run.product, run.partial_pq, run.rz, run.bz,
+            cl_double{method.solve_tolerance}, run.S, run.r, run.z, run.rz_before);
+    std::swap(run.rz, run.rz_before);
+    std::swap(run.p, run.p_before);
+  }
+}
+
+// S from the first guess, smoothed with a diagonal R.
+void MatrixNormalSolver::first_smoothing(Run& run, const MatrixNormal& method) {
+  std::vector<double> R(run.batch.square_size(), 0);
+  std::vector<Eigen::VectorXd> diagonals(run.windows());
+  run.upload(
+      [&](std::int32_t b) {
+        auto guess = run.window(b).first_guess();
+        run.diagonal_of(R, b) = guess.stiffness;
+        diagonals[static_cast<std::size_t>(b)] = std::move(guess.stiffness);
+        return guess.motion;
+      },
+      run.S);
+  run.D.write(run.host.storage());
+  run.R.write(R);
+  run.set_stiffness([&](std::int32_t b) { return diagonals[static_cast<std::size_t>(b)]; });
+  run.upload(
+      [&](std::int32_t b) {
+        return Matrix::Ones(run.window(b).rows(), run.window(b).columns()).eval();
+      },
+      run.W);
+  smooth(run, method);
+}
+
+// Weights and targets from the residuals, on the host.
+void MatrixNormalSolver::weigh(Run& run) {
+  std::vector<double> R(run.batch.square_size());
+  run.R.read(R);
+  std::vector<Eigen::VectorXd> diagonals(run.windows());
+  run.S.read(run.host.storage());
+  for (const std::int32_t b : run.batch.active()) {
+    Eigen::VectorXd& diagonal = diagonals[static_cast<std::size_t>(b)];
+    diagonal = run.diagonal_of(R, b);
+    run.window(b).weigh(run.host.segment(b), diagonal);
+  }
+  run.set_stiffness([&](std::int32_t b) { return diagonals[static_cast<std::size_t>(b)]; });
+  run.upload([&](std::int32_t b) -> const Matrix& { return run.window(b).weights(); }, run.W);
+  const auto changed = [&](std::int32_t b) { return run.window(b).target_changed(); };
+  if (std::ranges::any_of(run.batch.active(), changed))
+    run.upload([&](std::int32_t b) -> const Matrix& { return run.window(b).target(); }, run.D);
+}
+
+void MatrixNormalSolver::solve(const SegmentBatch& data, Index first, Index last,
+                               const MatrixNormal& method, Solution& solution,
+                               const Finished& finished, const std::stop_token& stop) {
+  Run run(device_, data, first, last, method);
+  if (run.batch.active_count() > 0) {
+    run.terms.write(
+        std::vector<std::int32_t>(run.windows(), static_cast<std::int32_t>(data.columns())));
+    first_smoothing(run, method);
+    run.iterations.fill_zero();
+  }
+  const int steps = method.soft_steps + method.hard_steps;
+  for (int step = 0; step < steps && run.batch.active_count() > 0; ++step) {
+    if (stop.stop_requested()) {
+      device_.finish();
+      throw Cancelled();
+    }
+    run.S.read(run.host.storage());
+    learn(run);
+    weigh(run);
+    smooth(run, method);
+    run.S.read(run.host.storage());
+    for (const std::int32_t b : run.batch.active())
+      run.window(b).estimate_noise(run.host.segment(b));
+  }
+  if (run.batch.active_count() > 0) eigen_.check(run.batch);
+  finish(run, first, solution);
+  finished(last - first);
+}
+
+void MatrixNormalSolver::finish(Run& run, Index first, Solution& solution) {
+  std::vector<std::int32_t> iterations(run.windows());
+  run.iterations.read(iterations);
+  for (std::size_t i = 0; i < run.windows(); ++i) {
+    const Index b = first + static_cast<Index>(i);
+    const MatrixNormalWindow& window = run.steps[i];
+    const auto own = run.host.segment(static_cast<Index>(i));
+    solution.low_rank.segment(b) = window.trivial() ? window.filled() : window.cleaned(own);
+    solution.trusted->segment(b) = window.trusted().cast<double>();
+    solution.deviation->segment(b) = window.deviation();
+    solution.sparse.segment(b) = window.rejected(solution.low_rank.segment(b));
+    solution.segments[static_cast<std::size_t>(b)] = {
+        .iterations = iterations[i], .rank = 0, .residual = 0, .converged = true};
+  }
+}
+
+}  // namespace moclean::opencl

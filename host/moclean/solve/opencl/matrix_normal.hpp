@@ -1,0 +1,47 @@
+#pragma once
+
+#include <functional>
+#include <stop_token>
+
+#include "moclean/linalg/eigensolver.hpp"
+#include "moclean/linalg/products.hpp"
+#include "moclean/solve/backend.hpp"
+
+namespace moclean::opencl {
+
+/// Matrix-normal smoothing of many windows at once on a device, in double; the steps are those of
+/// solve/reference/matrix_normal.cpp, in the same order. The device does what grows with the cube
+/// of the columns or with frames times columns squared, and the conjugate gradients as a whole; the
+/// host computes the statistics of MatrixNormalWindow between two steps.
+class MatrixNormalSolver {
+ public:
+  /// Throws ArgumentError for a tuning out of its range.
+  MatrixNormalSolver(const Device& device, const Tuning& tuning);
+
+  using Finished = std::function<void(Index)>;
+
+  /// Bytes of device memory a window of this size takes.
+  std::uint64_t memory_of(Index rows, Index columns, const MatrixNormal& method) const;
+
+  /// Solves the segments [first, last) of `data` into the same segments of `solution`.
+  void solve(const SegmentBatch& data, Index first, Index last, const MatrixNormal& method,
+             Solution& solution, const Finished& finished, const std::stop_token& stop);
+
+ private:
+  struct Run;
+
+  void first_smoothing(Run& run, const MatrixNormal& method);
+  void accelerate(Run& run);
+  void learn(Run& run);
+  void weigh(Run& run);
+  void smooth(Run& run, const MatrixNormal& method);
+  void finish(Run& run, Index first, Solution& solution);
+
+  const Device& device_;
+  Products products_;
+  Eigensolver eigen_;
+  Program program_;
+  Kernel factor_, start_, direction_, update_;
+};
+
+}  // namespace moclean::opencl

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <stop_token>
+
+#include "moclean/core/matrix.hpp"
+#include "moclean/solve/backend.hpp"
+#include "moclean/solve/matrix_normal.hpp"
+
+namespace moclean::reference {
+
+/// Delta'Delta X, Delta the second difference over the rows; 0 for fewer than three rows.
+Matrix stiffness(const Matrix& x);
+
+/// Minimises sum W_ij (D_ij - S_ij)^2 + tr(Delta S R (Delta S)') over S, that is solves
+///   W o S + Delta'Delta S R = W o D
+/// by preconditioned conjugate gradients from S on, R symmetric positive definite [columns x
+/// columns]. The preconditioner is the same system with the diagonal of R in its place, one
+/// pentadiagonal matrix per column. Stops after `iterations`, or when r'M^-1 r is `tolerance`^2 of
+/// what it is for S = 0. Returns the iterations taken.
+int smooth(const Matrix& data, const Matrix& weights, const Matrix& R, int iterations,
+           double tolerance, Matrix& S);
+
+/// One window cleaned.
+struct MatrixNormalSolution {
+  Matrix low_rank;   ///< the motion
+  Matrix sparse;     ///< D minus the motion where a sample was rejected, else 0
+  Matrix trusted;    ///< 1 where a sample was used, else 0
+  Matrix deviation;  ///< standard deviation of the motion
+  SegmentOutcome outcome;
+};
+
+/// The motion of one window [frames x columns], NaN where data is missing; `segment` is its place
+/// in method.knowledge. A window of fewer than five frames
+/// has its gaps filled linearly, no more. Throws Cancelled soon after `stop` is requested.
+MatrixNormalSolution solve(const ConstMatrixRef& data, const MatrixNormal& method,
+                           const std::stop_token& stop = {}, Index segment = 0);
+
+}  // namespace moclean::reference

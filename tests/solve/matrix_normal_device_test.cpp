@@ -1,0 +1,164 @@
+// Matrix-normal smoothing on every backend: what it promises, and the device against the reference.
+#include <limits>
+
+#include <gmock/gmock.h>
+
+#include "moclean/core/error.hpp"
+#include "moclean/core/random.hpp"
+
+#include "support/backends.hpp"
+#include "support/matrix.hpp"
+#include "support/synthetic_walk.hpp"
+#include "support/tolerance.hpp"
+
+namespace moclean {
+namespace {
+
+using test::BackendKind;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+// Motion with dense noise, gross errors and gaps.
+Matrix hard_data(Index frames, Index columns, std::uint64_t seed) {
+  Matrix data = test::synthetic_walk(frames, seed).samples.leftCols(std::min<Index>(columns, 93));
+  if (columns > 93) {
+    Matrix wider(frames, columns);
+    wider << data, test::synthetic_walk(frames, seed + 9).samples.leftCols(columns - 93);
+    data = wider;
+  }
+  Random random(seed);
+  for (Index i = 0; i < data.size(); ++i) {
+    double& x = data.data()[i];
+    x += 0.02 * random.normal();
+    if (random.uniform() < 0.05) x += 3;
+    if (random.uniform() < 0.05) x = nan;
+  }
+  return data;
+}
+
+SegmentBatch batch_of(const std::vector<Index>& lengths, Index columns) {
+  std::vector<Matrix> segments;
+  for (const Index length : lengths)
+    segments.push_back(hard_data(length, columns, segments.size() + 1));
+  return test::batch_of(segments);
+}
+
+// Links that hold nowhere in particular, and doubtful vouching: all branches, no sense.
+MatrixNormal with_knowledge(const SegmentBatch& data) {
+  MatrixNormal method;
+  for (Index b = 0; b < data.segments(); ++b) {
+    const Index joints = data.columns() / 3;
+    JointKnowledge known{.size = 10, .vouched = Mask::Constant(data.rows(b), joints, true)};
+    for (Index j = 1; j < joints; ++j) known.links.push_back({j - 1, j, 5, true, j % 2 == 0});
+    method.knowledge.push_back(known);
+  }
+  return method;
+}
+
+class MatrixNormalContract : public testing::TestWithParam<BackendKind> {
+ protected:
+  std::unique_ptr<Backend> backend_ = test::make_backend(GetParam());
+};
+
+TEST_P(MatrixNormalContract, ResultsDoNotDependOnPackingOrNeighbours) {
+  const SegmentBatch data = batch_of({50, 2, 12, 90}, 21);
+  const MatrixNormal method = with_knowledge(data);
+  const Solution together = backend_->solve(data, method);
+
+  for (Index b = 0; b < data.segments(); ++b) {
+    MatrixNormal own = method;
+    own.knowledge = {method.knowledge[static_cast<std::size_t>(b)]};
+    const Solution alone = backend_->solve(test::batch_of({Matrix(data.segment(b))}), own);
+    EXPECT_TRUE(
+        test::same_bits(Matrix(together.low_rank.segment(b)), Matrix(alone.low_rank.segment(0))));
+    EXPECT_TRUE(test::same_bits(Matrix(together.deviation->segment(b)),
+                                Matrix(alone.deviation->segment(0))));
+  }
+}
+
+TEST_P(MatrixNormalContract, TellsWhatItRejected) {
+  const SegmentBatch data = batch_of({80}, 21);
+
+  const Solution s = backend_->solve(data, MatrixNormal{});
+
+  const Matrix d = data.segment(0), motion = s.low_rank.segment(0);
+  EXPECT_TRUE(motion.allFinite());
+  for (Index i = 0; i < d.rows(); ++i)
+    for (Index j = 0; j < d.cols(); ++j) {
+      const bool gross = !std::isnan(d(i, j)) && s.trusted->segment(0)(i, j) == 0;
+      EXPECT_EQ(s.sparse.segment(0)(i, j), gross ? d(i, j) - motion(i, j) : 0);
+      EXPECT_GT(s.deviation->segment(0)(i, j), 0);
+    }
+}
+
+TEST_P(MatrixNormalContract, KeepsThePaddingZero) {
+  const Solution s = backend_->solve(batch_of({40, 30}, 21), MatrixNormal{});
+
+  for (const SegmentBatch* part : {&s.low_rank, &s.sparse, &*s.trusted, &*s.deviation}) {
+    const Eigen::Map<const Matrix> rows(part->storage().data(), part->rows(), part->pitch());
+    EXPECT_EQ(rows.rightCols(part->pitch() - part->columns()).cwiseAbs().sum(), 0);
+  }
+}
+
+TEST_P(MatrixNormalContract, ReportsEverySegmentAndStopsWhenAsked) {
+  Progress last;
+  std::stop_source stop;
+  const SegmentBatch data = batch_of({40, 30}, 9);
+  backend_->solve(data, MatrixNormal{}, {.report = [&](const Progress& p) { last = p; }});
+  stop.request_stop();
+
+  EXPECT_EQ(last.finished, 2);
+  EXPECT_EQ(last.total, 2);
+  EXPECT_THROW(backend_->solve(data, MatrixNormal{}, {.stop = stop.get_token()}), Cancelled);
+}
+
+INSTANTIATE_TEST_SUITE_P(Backends, MatrixNormalContract,
+                         testing::Values(BackendKind::reference, BackendKind::opencl_own,
+                                         BackendKind::opencl_clblast),
+                         [](const auto& parameter) { return to_string(parameter.param); });
+
+struct Shape {
+  Index rows, columns;
+};
+
+class MatrixNormalAgreement : public testing::TestWithParam<Shape> {};
+
+TEST_P(MatrixNormalAgreement, OfDeviceAndReference) {
+  const auto [rows, columns] = GetParam();
+  const SegmentBatch data = batch_of({rows, rows + 1}, columns);
+  const MatrixNormal method = columns % 3 == 0 ? with_knowledge(data) : MatrixNormal{};
+
+  const Solution device = OpenClBackend(test::device()).solve(data, method);
+  const Solution reference = ReferenceBackend(2).solve(data, method);
+
+  for (Index b = 0; b < data.segments(); ++b) {
+    SCOPED_TRACE("segment " + std::to_string(b));
+    const auto i = static_cast<std::size_t>(b);
+    const auto known = [](const auto& m) { return m.array().isNaN().select(0, m).eval(); };
+    EXPECT_EQ(device.segments[i].iterations, reference.segments[i].iterations);
+    EXPECT_EQ(Matrix(device.trusted->segment(b)), Matrix(reference.trusted->segment(b)));
+    EXPECT_LE(test::relative_difference(known(Matrix(device.low_rank.segment(b))),
+                                        known(Matrix(reference.low_rank.segment(b)))),
+              test::tolerance::backends_smoothing());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Shapes, MatrixNormalAgreement,
+                         testing::Values(Shape{1, 1}, Shape{3, 5}, Shape{64, 64}, Shape{200, 93},
+                                         Shape{61, 129}, Shape{25, 93}, Shape{300, 9},
+                                         Shape{530, 12}),
+                         [](const auto& parameter) {
+                           return std::to_string(parameter.param.rows) + "x" +
+                                  std::to_string(parameter.param.columns);
+                         });
+
+TEST(MatrixNormalDevice, IsCutToTheMemoryLimitWithoutChangingABit) {
+  const SegmentBatch data = batch_of({50, 12, 33, 90}, 21);
+  OpenClBackend whole(test::device()), small(test::device(), {.memory_limit = 600 * 1024});
+
+  EXPECT_TRUE(test::same_bits(small.solve(data, MatrixNormal{}).low_rank,
+                              whole.solve(data, MatrixNormal{}).low_rank));
+}
+
+}  // namespace
+}  // namespace moclean
