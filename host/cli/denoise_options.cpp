@@ -59,9 +59,9 @@ void add_segmentation(CLI::App& command, DenoiseOptions& options) {
   command
       .add_option(
           "--method", options.method_name,
-          "Steps joined by +, each NAME or NAME:key=value,key=value (docs/methods.md); slra "
-          "cuts a take into segments, rpca takes it whole")
-      ->capture_default_str()
+          "Steps joined by +, each NAME or NAME:key=value,key=value (docs/methods.md); auto needs "
+          "nothing, slra cuts a take into segments, rpca takes it whole")
+      ->default_str("auto; slra with options of segments or of robust PCA")
       ->type_name("METHOD")
       ->group(method_group);
   auto* length = command
@@ -225,12 +225,22 @@ void require_used(const DenoiseOptions& options) {
         name_of(options.chain.front())));
 }
 
+// What a command line without --method means.
+std::string default_method(const DenoiseOptions& options) {
+  const bool of_segments = options.segment_length || options.segments || options.segment_overlap ||
+                           options.division != "equal";
+  const bool of_robust_pca =
+      options.tolerance || options.method != RobustPca{} || options.precision == Precision::mixed;
+  return of_segments || of_robust_pca ? "slra" : "auto";
+}
+
 void require_device_work(const DenoiseOptions& options) {
   if (needs_backend(options.chain)) return;
   if (options.verify)
-    throw ArgumentError("--verify needs a matrix method; filters run on the host");
+    throw ArgumentError("--verify needs a method that runs on the device; filters run on the host");
   if (options.profile)
-    throw ArgumentError("--profile needs a matrix method; filters run on the host");
+    throw ArgumentError(
+        "--profile needs a method that runs on the device; filters run on the host");
 }
 
 void require_sigma(const DenoiseOptions& options) {
@@ -262,6 +272,7 @@ void complete(DenoiseOptions& options) {
   require_opencl(options);
   complete_backend(options);
   const bool mixed = options.precision == Precision::mixed;
+  if (options.method_name.empty()) options.method_name = default_method(options);
   RobustPca defaults = options.method;
   defaults.tolerance = options.tolerance.value_or(mixed ? mixed_tolerance : RobustPca{}.tolerance);
   if (mixed && defaults.tolerance < mixed_tolerance)

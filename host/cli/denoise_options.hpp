@@ -24,7 +24,7 @@ struct DenoiseOptions : BackendOptions {
   std::filesystem::path sigma;     ///< standard deviations; empty: not asked for
   std::string format;              ///< "csv", "npy" or empty
 
-  std::string method_name = "slra";  ///< --method, as it was given
+  std::string method_name;  ///< --method, as it was given; empty: see complete()
   std::optional<Index> segment_length;
   std::optional<Index> segments;
   std::optional<Index> segment_overlap;  ///< frames; default 0
@@ -53,7 +53,8 @@ struct DenoiseOptions : BackendOptions {
 /// Declares the options on the command; parsing fills `options`.
 void add_denoise_options(CLI::App& command, DenoiseOptions& options);
 
-/// Finishes what the parser cannot express. Throws ArgumentError for options that do not go
+/// Finishes what the parser cannot express. Without --method it is slra where an option of robust
+/// PCA or of segments is given, else auto. Throws ArgumentError for options that do not go
 /// together or are out of their range.
 void complete(DenoiseOptions& options);
 

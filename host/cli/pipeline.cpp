@@ -33,6 +33,7 @@ constexpr std::uint64_t copies_solving = 7, copies_verifying = 9, copies_of_trut
                         copies_choosing = 14, copies_writing = 2, copies_reporting = 8;
 
 bool overlaps(const Step& step) {
+  if (std::holds_alternative<Automatic>(step)) return true;
   const auto* low_rank = std::get_if<LowRank>(&step);
   return low_rank && low_rank->segmentation.overlap > 0;
 }
@@ -71,7 +72,10 @@ std::uint64_t host_limit(const DenoiseOptions& options) {
 }
 
 AgreementBounds agreement_bounds(const DenoiseOptions& options) {
-  return options.precision == Precision::mixed ? mixed_agreement_bounds : AgreementBounds{};
+  if (options.precision == Precision::mixed) return mixed_agreement_bounds;
+  const auto smooths = [](const Step& step) { return std::holds_alternative<Automatic>(step); };
+  return std::ranges::any_of(options.chain, smooths) ? smoothing_agreement_bounds
+                                                     : AgreementBounds{};
 }
 
 void require_going(const std::stop_token& stop) {

@@ -106,7 +106,7 @@ TEST_F(Denoise, RecordStatesTimeAndMemoryOfTheRun) {
 }
 
 TEST_F(Denoise, RecordingBeyondTheMemoryLimitIsNamed) {
-  const Outcome outcome = denoise({"-o", output_, "--memory-limit", "512K"});
+  const Outcome outcome = denoise({"-o", output_, "--method", "slra", "--memory-limit", "512K"});
 
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, HasSubstr(input_ + ": needs 610.3 KiB of memory, but --memory-limit "
@@ -304,8 +304,10 @@ INSTANTIATE_TEST_SUITE_P(
         WrongOptions{"FilterSegments", {"--method", "median", "--segments", "2"}, "--method slra"},
         WrongOptions{"FilterLambda", {"--method", "median", "--lambda", "2"}, "--method slra and"},
         WrongOptions{"TsvdTolerance", {"--method", "tsvd", "--tolerance", "1e-3"}, "--method slra"},
-        WrongOptions{"FilterVerify", {"--method", "median", "--verify"}, "needs a matrix method"},
-        WrongOptions{"FilterProfile", {"--method", "median", "--profile"}, "needs a matrix method"},
+        WrongOptions{
+            "FilterVerify", {"--method", "median", "--verify"}, "needs a method that runs"},
+        WrongOptions{
+            "FilterProfile", {"--method", "median", "--profile"}, "needs a method that runs"},
         WrongOptions{"TsvdMixed", {"--method", "tsvd", "--precision", "mixed"}, "f64) only"},
         WrongOptions{"CutOff", {"--method", "butterworth:cutoff=60"}, "half the frame rate"},
         WrongOptions{"Jobs", {"--jobs", "0"}, "--jobs"},
@@ -322,7 +324,7 @@ INSTANTIATE_TEST_SUITE_P(
         WrongOptions{"MaskFormat", {"--mask", "m.txt"}, "expected .csv or .npy"},
         WrongOptions{"GapNegative", {"--max-gap", "-1"}, "--max-gap"},
         WrongOptions{"GapText", {"--max-gap", "long"}, "--max-gap"},
-        WrongOptions{"Sigma", {"--sigma", "s.npy"}, "--sigma: method slra:"},
+        WrongOptions{"Sigma", {"--sigma", "s.npy", "--method", "slra"}, "--sigma: method slra:"},
         WrongOptions{"SigmaOfFilter", {"--method", "median", "--sigma", "s.npy"}, "method median:"},
         WrongOptions{"VerifyReference", {"--verify", "--backend", "reference"}, "--verify"}),
     [](const auto& test) { return test.param.name; });

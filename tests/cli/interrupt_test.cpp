@@ -22,6 +22,7 @@ std::vector<std::string> long_run(const TemporaryFolder& folder, Index frames) {
   return {"denoise",   folder.write("walk.npy", synthetic_walk(frames)),
           "-o",        folder / "clean.npy",
           "--json",    folder / "record.json",
+          "--method",  "slra",
           "--backend", "reference",
           "--jobs",    "1"};
 }
@@ -75,8 +76,8 @@ TEST(Interrupt, RemovesTheResultsThatWaitForTheOthers) {
   const TemporaryFolder folder;
   for (const char* name : {"takes/a.npy", "takes/b.npy", "takes/c.npy"})
     folder.write(name, synthetic_walk(3000));
-  Program program({"denoise", folder / "takes", "-o", folder / "clean", "--backend", "reference",
-                   "--jobs", "1", "--memory-limit", "32M"},
+  Program program({"denoise", folder / "takes", "-o", folder / "clean", "--method", "slra",
+                   "--backend", "reference", "--jobs", "1", "--memory-limit", "32M"},
                   {.device = "", .terminal = true});
   const auto some_wait = [&] {
     return std::ranges::any_of(folder.names(),

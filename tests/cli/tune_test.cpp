@@ -29,7 +29,7 @@ class Tune : public ::testing::Test {
     return run(options, {.cache = cache_});
   }
   Outcome denoise(std::vector<std::string> options) const {
-    options.insert(options.begin(), {"denoise", input_, "-o", output_});
+    options.insert(options.begin(), {"denoise", input_, "-o", output_, "--method", "slra"});
     return run(options, {.cache = cache_});
   }
 

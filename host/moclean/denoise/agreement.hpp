@@ -37,6 +37,10 @@ inline constexpr AgreementBounds mixed_agreement_bounds{
 /// tested - reference, 0 where both are NaN: a column without a sample is left by both.
 Matrix difference_of(const Matrix& tested, const Matrix& reference);
 
+/// Bounds for matrix-normal smoothing (`auto`): its steps end before they have converged, which
+/// amplifies rounding. E is D - A where a sample was rejected, with A's absolute error.
+inline constexpr AgreementBounds smoothing_agreement_bounds{.low_rank = 1e-6, .sparse = 1e-4};
+
 /// Compares a result with that of the reference, all segments of the take together.
 /// Where a part of the reference is zero, the difference is relative to |A_ref + E_ref|_F instead;
 /// 0/0 counts as 0. Throws ShapeError if the shapes or the segments differ.

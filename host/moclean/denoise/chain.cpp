@@ -10,11 +10,14 @@ namespace moclean {
 namespace {
 
 Index segments_of(const Step& step, std::span<const Clip> takes) {
-  const auto* low_rank = std::get_if<LowRank>(&step);
-  if (!low_rank) return 0;
+  if (std::holds_alternative<Filter>(step)) return 0;
   Index count = 0;
-  for (const Clip& take : takes)
-    count += static_cast<Index>(plan(low_rank->segmentation, take.frames()).size()) - 1;
+  for (const Clip& take : takes) {
+    const auto* low_rank = std::get_if<LowRank>(&step);
+    const SegmentPlan cut = low_rank ? plan(low_rank->segmentation, take.frames())
+                                     : plan(std::get<Automatic>(step), take.frames());
+    count += static_cast<Index>(cut.size()) - 1;
+  }
   return count;
 }
 
@@ -32,17 +35,19 @@ ChainDenoiser::ChainDenoiser(Chain chain, Backend* backend, int jobs)
     : chain_(std::move(chain)), backend_(backend), jobs_(jobs) {
   if (chain_.empty()) throw ArgumentError("a chain needs at least one method");
   if (!backend && needs_backend(chain_))
-    throw ArgumentError(name_of(Step(*first_low_rank(chain_))) + " needs a backend");
+    throw ArgumentError(name_of(*first_on_backend(chain_)) + " needs a backend");
 }
 
-std::vector<Denoised> ChainDenoiser::low_rank_alone(std::span<const Clip> takes,
-                                                    const Monitor& monitor) {
-  const auto& step = std::get<LowRank>(chain_.front());
-  return LowRankDenoiser(step.segmentation, step.method, *backend_).denoise(takes, monitor);
+std::vector<Denoised> ChainDenoiser::solve(const Step& step, std::span<const Clip> takes,
+                                           const Monitor& monitor) {
+  if (const auto* automatic = std::get_if<Automatic>(&step))
+    return AutomaticDenoiser(*automatic, *backend_, jobs_).denoise(takes, monitor);
+  const auto& low_rank = std::get<LowRank>(step);
+  return LowRankDenoiser(low_rank.segmentation, low_rank.method, *backend_).denoise(takes, monitor);
 }
 
 std::vector<Denoised> ChainDenoiser::denoise(std::span<const Clip> takes, const Monitor& monitor) {
-  if (chain_.size() == 1 && needs_backend(chain_)) return low_rank_alone(takes, monitor);
+  if (chain_.size() == 1 && needs_backend(chain_)) return solve(chain_.front(), takes, monitor);
   Progress all;
   for (const Step& step : chain_) all.total += segments_of(step, takes);
   Monitor part{.stop = monitor.stop};
@@ -55,20 +60,21 @@ std::vector<Denoised> ChainDenoiser::denoise(std::span<const Clip> takes, const 
   std::vector<Denoised> results(takes.size());
   for (const Step& step : chain_) {
     if (monitor.stop.stop_requested()) throw Cancelled();
-    if (const auto* low_rank = std::get_if<LowRank>(&step)) {
-      auto solved =
-          LowRankDenoiser(low_rank->segmentation, low_rank->method, *backend_).denoise(clips, part);
+    const auto* filter = std::get_if<Filter>(&step);
+    if (!filter) {
+      auto solved = solve(step, clips, part);
       for (std::size_t t = 0; t < clips.size(); ++t) {
         clips[t] = std::move(solved[t].clip);
         results[t].solve_seconds += solved[t].solve_seconds;
         if (results[t].segments.empty()) results[t].segments = std::move(solved[t].segments);
+        if (&step == &chain_.back()) results[t].sigma = std::move(solved[t].sigma);
       }
       all.finished += segments_of(step, takes);
       continue;
     }
     for (std::size_t t = 0; t < clips.size(); ++t) {
       const auto begin = std::chrono::steady_clock::now();
-      clips[t] = filtered(clips[t], std::get<Filter>(step), jobs_);
+      clips[t] = filtered(clips[t], *filter, jobs_);
       results[t].solve_seconds +=
           std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     }

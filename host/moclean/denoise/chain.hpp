@@ -6,6 +6,7 @@
 #include <variant>
 #include <vector>
 
+#include "moclean/denoise/automatic.hpp"
 #include "moclean/denoise/denoiser.hpp"
 #include "moclean/denoise/low_rank.hpp"
 #include "moclean/filter/filter.hpp"
@@ -21,7 +22,7 @@ struct LowRank {
 };
 
 /// One step of cleaning.
-using Step = std::variant<LowRank, Filter>;
+using Step = std::variant<LowRank, Automatic, Filter>;
 
 /// Steps one after the other, each works on what the one before made. There is at least one.
 using Chain = std::vector<Step>;
@@ -36,7 +37,7 @@ struct StepDefaults {
   bool automatic = false;  ///< segments of slra and tslra where it costs least
 };
 
-/// The names a step may begin with: slra, rpca, tsvd, svt, completion, tslra and the filters.
+/// The names a step may begin with: auto, slra, rpca, tsvd, svt, completion, tslra and the filters.
 std::vector<std::string_view> step_names();
 
 /// Reads `hampel:window=7,sigmas=3+butterworth:cutoff=10`. The keys of a matrix method are its
@@ -53,8 +54,10 @@ std::string to_string(const Chain& chain);
 /// The first matrix method of a chain, whose segments are those of the result; null if it has none.
 const LowRank* first_low_rank(const Chain& chain);
 
-/// Whether any step is a matrix method, which needs a backend.
-inline bool needs_backend(const Chain& chain) { return first_low_rank(chain) != nullptr; }
+/// The first step that is no filter, so that it needs a backend; null if there is none.
+const Step* first_on_backend(const Chain& chain);
+
+inline bool needs_backend(const Chain& chain) { return first_on_backend(chain) != nullptr; }
 
 /// The name of the first step that needs the frame rate; empty if none does.
 std::string needs_frame_rate(const Chain& chain);
@@ -81,7 +84,8 @@ class ChainDenoiser final : public Denoiser {
   std::vector<Denoised> denoise(std::span<const Clip> takes, const Monitor& monitor = {}) override;
 
  private:
-  std::vector<Denoised> low_rank_alone(std::span<const Clip> takes, const Monitor& monitor);
+  std::vector<Denoised> solve(const Step& step, std::span<const Clip> takes,
+                              const Monitor& monitor);
 
   Chain chain_;
   Backend* backend_;

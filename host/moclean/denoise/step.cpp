@@ -95,6 +95,7 @@ std::optional<Step> find_method(const Specification& given, const StepDefaults& 
 Step parse_step(std::string_view text, const StepDefaults& defaults) {
   const Specification given("method", text);
   if (const auto method = find_method(given, defaults)) return *method;
+  if (given.name() == Automatic::name) return read_parameters<Automatic>(given);
   const auto filter =
       find_alternative<Filter>(given, []<class F>(const Specification& own, const F& defaulted) {
         return read_parameters(own, defaulted);
@@ -129,7 +130,7 @@ std::string specification_of(const LowRank& step) {
 }  // namespace
 
 std::vector<std::string_view> step_names() {
-  std::vector<std::string_view> names = {slra, rpca};
+  std::vector<std::string_view> names = {Automatic::name, slra, rpca};
   for (const std::string_view name : names_of<OtherMethods>()) names.push_back(name);
   for (const std::string_view name : names_of<Filter>()) names.push_back(name);
   return names;
@@ -144,6 +145,7 @@ Chain parse_chain(std::string_view specification, const StepDefaults& defaults) 
 
 std::string name_of(const Step& step) {
   if (const auto* filter = std::get_if<Filter>(&step)) return std::string(name_of(*filter));
+  if (std::holds_alternative<Automatic>(step)) return std::string(Automatic::name);
   const auto& low_rank = std::get<LowRank>(step);
   return std::visit([&](const auto& m) { return method_name(m, low_rank.segmentation); },
                     low_rank.method);
@@ -151,6 +153,7 @@ std::string name_of(const Step& step) {
 
 std::string to_string(const Step& step) {
   if (const auto* filter = std::get_if<Filter>(&step)) return to_string(*filter);
+  if (const auto* automatic = std::get_if<Automatic>(&step)) return to_specification(*automatic);
   return specification_of(std::get<LowRank>(step));
 }
 
@@ -173,12 +176,19 @@ std::string needs_frame_rate(const Chain& chain) {
   return {};
 }
 
-bool has_sigma(const Chain&) { return false; }
+const Step* first_on_backend(const Chain& chain) {
+  for (const Step& step : chain)
+    if (!std::holds_alternative<Filter>(step)) return &step;
+  return nullptr;
+}
+
+bool has_sigma(const Chain& chain) { return std::holds_alternative<Automatic>(chain.back()); }
 
 bool accepts_missing(const Chain& chain) {
   for (const Step& step : chain) {
     if (const auto* method = std::get_if<LowRank>(&step)) return accepts_missing(method->method);
-    if (fills_gaps(std::get<Filter>(step))) return true;
+    const auto* filter = std::get_if<Filter>(&step);
+    if (!filter || fills_gaps(*filter)) return true;
   }
   return true;
 }

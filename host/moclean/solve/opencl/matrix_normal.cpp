@@ -7,7 +7,6 @@
 
 #include "moclean/core/error.hpp"
 #include "moclean/device/kernel_source.hpp"
-#include "moclean/linalg/work.hpp"
 #include "moclean/solve/matrix_normal_steps.hpp"
 
 namespace moclean::opencl {
@@ -192,11 +191,10 @@ void MatrixNormalSolver::smooth(Run& run, const MatrixNormal& method) {
   factor_(columns, batch.device_segments(), batch.device_active(), run.W, run.stiffness, run.least,
           run.inverse_pivot, run.first_band);
   const auto search = [&](const Buffer<double>& z, double tolerance, bool begins) {
-    direction_.with([&] {
-      return total_work(batch, [](std::size_t, const SegmentRecord& s) { return apply_work(s); });
-    })(per_block(batch), batch.device_segments(), batch.device_blocks(), batch.active_blocks(),
-       run.W, run.R, z, run.p_before, run.rz, run.rz_before, run.bz, cl_double{tolerance},
-       cl_int{begins}, run.scratch, run.p, run.product, run.partial_pq, run.iterations);
+    direction_(per_block(batch), batch.device_segments(), batch.device_blocks(),
+               batch.active_blocks(), run.W, run.R, z, run.p_before, run.rz, run.rz_before, run.bz,
+               cl_double{tolerance}, cl_int{begins}, run.scratch, run.p, run.product,
+               run.partial_pq, run.iterations);
   };
   search(run.S, -1, true);
   start_(columns, batch.device_segments(), batch.device_active(), run.D, run.W, run.stiffness,

@@ -1,0 +1,224 @@
+#include "moclean/denoise/automatic.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "moclean/body/jump_flags.hpp"
+#include "moclean/body/rigid_flags.hpp"
+#include "moclean/body/vanished.hpp"
+#include "moclean/core/error.hpp"
+#include "moclean/core/parallel.hpp"
+#include "moclean/denoise/unobserved.hpp"
+#include "moclean/segment/spans.hpp"
+#include "moclean/solve/matrix_normal_statistics.hpp"
+
+namespace moclean {
+namespace {
+
+constexpr double usual_rate = 120;                             // Hz, where none is known
+constexpr double median_seconds = 0.058, lag_seconds = 0.067;  // of the first guess
+constexpr double edge_floor = 1e-4;        // least spread of a distance, share of the body's size
+constexpr double noise_of_distance = 1.4;  // of two samples, about sqrt 2
+constexpr Index shortest_window = 8;
+constexpr double missing = std::numeric_limits<double>::quiet_NaN();
+
+double rate_of(const Clip& take) { return take.frame_rate > 0 ? take.frame_rate : usual_rate; }
+
+// Whether all columns come in joints of three, enough of them for a body.
+bool has_body(const Clip& take) {
+  for (const Joint& joint : joints(take))
+    if (joint.columns != 3) return false;
+  return take.samples.cols() >= 6;
+}
+
+// A take as the windows see it.
+struct Prepared {
+  Matrix samples;            // NaN where missing or flagged
+  JointKnowledge knowledge;  // of the whole take
+  Spans spans;
+};
+
+void drop(const Mask& joints, Matrix& samples) {
+  for (Index i = 0; i < joints.rows(); ++i)
+    for (Index j = 0; j < joints.cols(); ++j)
+      if (joints(i, j)) samples.row(i).segment<3>(3 * j).setConstant(missing);
+}
+
+// Takes out what the body says is wrong.
+void look_at_body(double frame_rate, Prepared& prepared) {
+  const BodyTake first = body_take(prepared.samples, frame_rate);
+  drop(vanished(first), prepared.samples);
+  const BodyTake take = body_take(prepared.samples, frame_rate);
+  JointKnowledge& known = prepared.knowledge;
+  known.size = body_size(take);
+  if (known.size <= 0) return;
+  const double smallest =
+      std::max(noise_of_distance * dense_noise_level(prepared.samples), edge_floor * known.size);
+  const RigidBody body = learn_rigid_body(take, known.size, smallest);
+  for (const RigidEdge& edge : body.edges)
+    if (edge.hard || edge.exact)
+      known.links.push_back({edge.first, edge.second, edge.length, edge.hard, edge.exact});
+  RigidFlags flags = judge(take, body, known.size, smallest);
+  if (body.is_rigid()) {
+    const Mask trusted = flags.consistent && !flags.bad && take.seen;
+    flags.bad = flags.bad || jump_flags(take, trusted, body, known.size);
+  }
+  drop(flags.bad, prepared.samples);
+  known.vouched = flags.vouched && !flags.bad;
+}
+
+Prepared prepare(const Clip& take, const Automatic& method) {
+  Prepared prepared{.samples = take.samples, .knowledge = {}, .spans = {}};
+  if (method.body == BodyRules::on && has_body(take)) look_at_body(rate_of(take), prepared);
+  prepared.spans = overlapping_spans(plan(method, take.frames()), method.overlap);
+  return prepared;
+}
+
+JointKnowledge cut(const JointKnowledge& known, const Span& span) {
+  JointKnowledge part{.size = known.size, .links = known.links};
+  if (known.vouched.size() > 0) part.vouched = known.vouched.middleRows(span.first, span.frames());
+  return part;
+}
+
+// What the windows of one solve have in common: columns, and frames or columns per joint.
+MatrixNormal matrix_normal_of(const Clip& take) {
+  return {.joint_columns = has_body(take) ? 3 : 1,
+          .median_frames = odd_frames(median_seconds, rate_of(take)),
+          .lag_frames = std::max<Index>(1, std::lround(lag_seconds * rate_of(take)))};
+}
+
+// Takes whose windows share one solve.
+struct Group {
+  MatrixNormal method;
+  std::vector<std::size_t> takes;
+};
+
+// By columns and by what the method depends on, in order of the takes.
+std::vector<Group> group_alike(std::span<const Clip> takes) {
+  std::vector<Group> groups;
+  for (std::size_t t = 0; t < takes.size(); ++t) {
+    MatrixNormal method = matrix_normal_of(takes[t]);
+    const auto alike = [&](const Group& group) {
+      return group.method == method &&
+             takes[group.takes.front()].samples.cols() == takes[t].samples.cols();
+    };
+    const auto found = std::ranges::find_if(groups, alike);
+    if (found == groups.end())
+      groups.push_back({std::move(method), {t}});
+    else
+      found->takes.push_back(t);
+  }
+  return groups;
+}
+
+// The windows of a group one below the other; their knowledge goes to its method.
+SegmentBatch stack(std::span<const Prepared> prepared, Group& group) {
+  std::vector<Index> first_row = {0};
+  for (const std::size_t t : group.takes)
+    for (const Span& span : prepared[t].spans) {
+      first_row.push_back(first_row.back() + span.frames());
+      group.method.knowledge.push_back(cut(prepared[t].knowledge, span));
+    }
+  SegmentBatch data(prepared[group.takes.front()].samples.cols(), std::move(first_row));
+  Index segment = 0;
+  for (const std::size_t t : group.takes) {
+    stack_spans(prepared[t].samples, prepared[t].spans, data, segment);
+    segment += static_cast<Index>(prepared[t].spans.size());
+  }
+  return data;
+}
+
+void require_samples(const Clip& take, std::size_t index) {
+  if (take.samples.size() == 0) throw ShapeError(fmt::format("take {} is empty", index));
+  for (Index f = 0; f < take.frames(); ++f)
+    for (Index c = 0; c < take.samples.cols(); ++c)
+      if (std::isinf(take.samples(f, c)))
+        throw ShapeError(fmt::format("take {}: infinite at frame {}, column {}", index, f,
+                                     take.columns[static_cast<std::size_t>(c)]));
+}
+
+Clip like(const Clip& take, Matrix samples) {
+  return {.samples = std::move(samples),
+          .columns = take.columns,
+          .frame_rate = take.frame_rate,
+          .unit = take.unit};
+}
+
+Denoised result_of(const Clip& take, const Spans& spans, const Solution& solution, Index segment) {
+  const Matrix motion = blend_spans(solution.low_rank, spans, segment);
+  const Mask observed = !take.samples.array().isNaN();
+  const Mask trusted = observed && blend_spans(*solution.trusted, spans, segment).array() >= 0.5;
+  const Mask gross = observed && !trusted && !motion.array().isNaN();
+  Denoised result;
+  result.outliers = like(take, gross.select(take.samples - motion, 0));
+  result.clip = like(take, motion);
+  result.sigma = like(take, blend_spans(*solution.deviation, spans, segment));
+  result.trusted = trusted;
+  for (std::size_t s = 0; s < spans.size(); ++s)
+    result.segments.push_back({spans[s].first, spans[s].frames(),
+                               solution.segments[static_cast<std::size_t>(segment) + s]});
+  leave_unobserved(take, result);
+  return result;
+}
+
+}  // namespace
+
+SegmentPlan plan(const Automatic& method, Index frames) {
+  return segments_of_length(frames, method.window);
+}
+
+void check(const Automatic& method) {
+  if (method.window < shortest_window)
+    throw ArgumentError(fmt::format("auto: window is {}, expected at least {} frames",
+                                    method.window, shortest_window));
+  if (method.overlap < 0)
+    throw ArgumentError(
+        fmt::format("auto: overlap is {}, expected at least 0 frames", method.overlap));
+}
+
+std::vector<Denoised> AutomaticDenoiser::denoise(std::span<const Clip> takes,
+                                                 const Monitor& monitor) {
+  check(method_);
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point begin = Clock::now();
+  for (std::size_t t = 0; t < takes.size(); ++t) require_samples(takes[t], t);
+  std::vector<Prepared> prepared(takes.size());
+  for_each_index(static_cast<Index>(takes.size()), jobs_, [&](Index t) {
+    const auto i = static_cast<std::size_t>(t);
+    prepared[i] = prepare(takes[i], method_);
+  });
+  Progress all;
+  double frames = 0;
+  for (const Prepared& one : prepared) {
+    all.total += static_cast<Index>(one.spans.size());
+    frames += static_cast<double>(one.samples.rows());
+  }
+  Monitor part{.stop = monitor.stop};
+  if (monitor.report)
+    part.report = [&](const Progress& own) {
+      monitor.report({.finished = all.finished + own.finished, .total = all.total});
+    };
+
+  std::vector<Denoised> results(takes.size());
+  for (Group& group : group_alike(takes)) {
+    const SegmentBatch data = stack(prepared, group);
+    const Solution solution = backend_.solve(data, group.method, part);
+    all.finished += data.segments();
+    Index segment = 0;
+    for (const std::size_t t : group.takes) {
+      results[t] = result_of(takes[t], prepared[t].spans, solution, segment);
+      segment += static_cast<Index>(prepared[t].spans.size());
+    }
+  }
+  const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
+  for (std::size_t t = 0; t < takes.size(); ++t)
+    results[t].solve_seconds = seconds * static_cast<double>(takes[t].frames()) / frames;
+  return results;
+}
+
+}  // namespace moclean

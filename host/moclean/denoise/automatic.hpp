@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <string_view>
+
+#include "moclean/core/parameters.hpp"
+#include "moclean/denoise/denoiser.hpp"
+#include "moclean/segment/plan.hpp"
+
+namespace moclean {
+
+/// Whether what a take shows of its body is used.
+enum class BodyRules { on, off };
+
+/// Cleaning without parameters to choose: matrix-normal smoothing (solve/matrix_normal.hpp) of
+/// overlapping windows, told by the distances between joints which samples are wrong. Works on any
+/// columns; where all come in joints of three, the body's rules apply (moclean/body):
+///   joints at the origin are missing (vanished), joints at wrong distances are rejected before
+///   anything is fitted (rigid_flags), limbs that jump away and back are (jump_flags), and exact
+///   distances hold in gaps. Soft marker sets have no constant distances, and no such rules.
+/// Times are in seconds where it matters: rates of 25 to 250 Hz.
+struct Automatic {
+  Index window = 2000;  ///< frames; longer takes are divided equally into about so many, at least 8
+  Index overlap = 100;  ///< frames that neighbouring windows share, at least 0
+  BodyRules body = BodyRules::on;
+
+  bool operator==(const Automatic&) const = default;
+
+  static constexpr std::string_view name = "auto";
+  static constexpr std::array<std::string_view, 2> choices = {"on", "off"};
+  static void visit(auto& self, auto& visitor) {
+    visitor("window", self.window);
+    visitor("overlap", self.overlap);
+    visitor("body", self.body, choices);
+  }
+};
+
+/// The windows of a take before they overlap.
+SegmentPlan plan(const Automatic& method, Index frames);
+
+/// Throws ArgumentError naming the first parameter out of its range.
+void check(const Automatic& method);
+
+/// Runs Automatic. Results have `trusted` and `sigma`; outliers are what was rejected. A take
+/// without a frame rate counts as one of 120 Hz. NaN means missing; columns that a window has no
+/// sample of stay NaN in it.
+class AutomaticDenoiser final : public Denoiser {
+ public:
+  /// `backend` is used by denoise() and has to outlive this object. Up to `jobs` threads look at
+  /// the takes' bodies; the result does not depend on them.
+  AutomaticDenoiser(const Automatic& method, Backend& backend, int jobs = 1)
+      : method_(method), backend_(backend), jobs_(jobs) {}
+
+  std::vector<Denoised> denoise(std::span<const Clip> takes, const Monitor& monitor = {}) override;
+
+ private:
+  Automatic method_;
+  Backend& backend_;
+  int jobs_;
+};
+
+}  // namespace moclean

@@ -1,0 +1,162 @@
+#include "moclean/denoise/automatic.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+
+#include "moclean/core/error.hpp"
+#include "moclean/core/random.hpp"
+#include "moclean/filter/filter.hpp"
+#include "moclean/solve/reference/reference_backend.hpp"
+
+#include "support/limbs.hpp"
+#include "support/matrix.hpp"
+#include "support/synthetic_walk.hpp"
+
+namespace moclean {
+namespace {
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+Clip limbs(Index frames, double rate = 120) {
+  const Matrix samples = test::swinging_limbs(frames, 8);
+  return {.samples = samples, .columns = default_column_names(24), .frame_rate = rate, .unit = ""};
+}
+
+// Whole joints off by a constant for `length` frames.
+Clip with_bursts(Clip clip, Index length) {
+  Random random(3);
+  for (Index first = 40; first + length < clip.frames(); first += 2 * length) {
+    const auto joint = static_cast<Index>(random.uniform() * 8);
+    for (Index c = 0; c < 3; ++c) {
+      const double by = (random.uniform() < 0.5 ? -1 : 1) * (0.5 + random.uniform());
+      clip.samples.col(3 * joint + c).segment(first, length).array() += by;
+    }
+  }
+  return clip;
+}
+
+double rms(const Clip& a, const Clip& b) {
+  return (a.samples - b.samples).norm() / std::sqrt(static_cast<double>(a.samples.size()));
+}
+
+Denoised cleaned(const Clip& clip, const Automatic& method = {}) {
+  ReferenceBackend backend(2);
+  return AutomaticDenoiser(method, backend).denoise(std::vector{clip})[0];
+}
+
+TEST(Automatic, RemovesBurstsThatOutlastAnyMedian) {
+  const Clip truth = limbs(600), noisy = with_bursts(truth, 30);
+
+  const Denoised result = cleaned(noisy);
+
+  EXPECT_LE(rms(result.clip, truth), 0.05 * rms(filtered(noisy, MedianFilter{}), truth));
+  EXPECT_LE(rms(result.clip, truth),
+            0.2 * rms(cleaned(noisy, {.body = BodyRules::off}).clip, truth));
+}
+
+TEST(Automatic, TellsOfEverySampleWhetherItWasTrusted) {
+  const Clip truth = limbs(400), noisy = with_bursts(truth, 25);
+
+  const Denoised result = cleaned(noisy);
+
+  const Mask wrong = (noisy.samples - truth.samples).array().abs() > 1e-9;
+  EXPECT_FALSE((wrong && *result.trusted).any());
+  const Mask right = !wrong;
+  EXPECT_GE(static_cast<double>((right && *result.trusted).count()),
+            0.95 * static_cast<double>(right.count()));
+  const Matrix sum = result.clip.samples + result.outliers.samples;
+  EXPECT_LE((wrong.select(sum - noisy.samples, 0)).norm(), 1e-12);
+  EXPECT_TRUE((result.sigma->samples.array() > 0).all());
+}
+
+TEST(Automatic, FillsGapsAndZeros) {
+  const Clip truth = limbs(400);
+  Clip gappy = truth;
+  gappy.samples.block(100, 6, 30, 3).setConstant(nan);
+  gappy.samples.block(200, 12, 30, 3).setZero();
+
+  const Denoised result = cleaned(gappy);
+
+  EXPECT_TRUE(result.clip.samples.allFinite());
+  EXPECT_LE(rms(result.clip, truth), 0.02);
+}
+
+TEST(Automatic, ScalesWithTheUnitOfLength) {
+  const Clip noisy = with_bursts(limbs(300), 20);
+  const Clip expected = cleaned(noisy).clip;
+
+  for (const double scale : {1e-3, 1e3}) {
+    Clip scaled = noisy;
+    scaled.samples *= scale;
+    EXPECT_LE(test::relative_difference(cleaned(scaled).clip.samples / scale, expected.samples),
+              1e-9);
+  }
+}
+
+TEST(Automatic, WindowsLeaveNoSeam) {
+  const Clip truth = test::synthetic_walk(700);
+  Clip noisy = truth;
+  Random random(5);
+  for (Index i = 0; i < noisy.samples.size(); ++i)
+    if (random.uniform() < 0.1) noisy.samples.data()[i] += 2 * random.normal();
+
+  const Denoised result = cleaned(noisy, {.window = 230, .overlap = 60});
+
+  ASSERT_EQ(result.segments.size(), 3u);
+  const Matrix error = result.clip.samples - truth.samples;
+  std::vector<double> elsewhere;
+  double at_seams = 0;
+  for (Index i = 1; i + 1 < error.rows(); ++i) {
+    const double a = (error.row(i - 1) - 2 * error.row(i) + error.row(i + 1)).cwiseAbs().maxCoeff();
+    // The boundaries 233 and 466, and where the 60 frames that windows share begin and end.
+    bool seam = false;
+    for (const Index boundary : {233, 466})
+      for (const Index at : {boundary - 30, boundary, boundary + 30})
+        seam = seam || std::abs(i - at) <= 1;
+    if (seam)
+      at_seams = std::max(at_seams, a);
+    else
+      elsewhere.push_back(a);
+  }
+  std::ranges::sort(elsewhere);
+  EXPECT_LE(at_seams, elsewhere[elsewhere.size() * 99 / 100]);
+}
+
+TEST(Automatic, ResultsDoNotDependOnOtherTakesOrJobs) {
+  const std::vector<Clip> takes = {with_bursts(limbs(200), 20), limbs(130, 30),
+                                   test::synthetic_walk(90), with_bursts(limbs(170), 10)};
+  ReferenceBackend backend(2);
+
+  const auto together = AutomaticDenoiser({}, backend, 3).denoise(takes);
+
+  for (std::size_t t = 0; t < takes.size(); ++t)
+    EXPECT_TRUE(test::same_bits(together[t].clip.samples, cleaned(takes[t]).clip.samples)) << t;
+}
+
+TEST(Automatic, TakesWhateverComes) {
+  Clip unseen = limbs(60);
+  unseen.samples.col(4).setConstant(nan);
+  const Denoised result = cleaned(unseen);
+  EXPECT_TRUE(result.clip.samples.col(4).array().isNaN().all());
+  EXPECT_EQ(result.unobserved, std::vector<std::string>{unseen.columns[4]});
+
+  for (const Index frames : {1, 2, 3, 10})
+    EXPECT_TRUE(cleaned(limbs(frames)).clip.samples.allFinite());
+  Clip plain{.samples = test::synthetic_walk(80).samples.leftCols(5),
+             .columns = {"a", "b", "c", "d", "e"},
+             .frame_rate = 0,
+             .unit = ""};
+  EXPECT_LE(rms(cleaned(plain).clip, plain), 1e-3);
+  plain.samples(3, 2) = std::numeric_limits<double>::infinity();
+  EXPECT_THROW(cleaned(plain), ShapeError);
+}
+
+TEST(Automatic, RefusesParametersOutOfRange) {
+  EXPECT_THROW(cleaned(limbs(20), {.window = 7}), ArgumentError);
+  EXPECT_THROW(cleaned(limbs(20), {.overlap = -1}), ArgumentError);
+}
+
+}  // namespace
+}  // namespace moclean
