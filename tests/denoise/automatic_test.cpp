@@ -83,6 +83,16 @@ TEST(Automatic, FillsGapsAndZeros) {
   EXPECT_LE(rms(result.clip, truth), 0.02);
 }
 
+TEST(Automatic, LeavesNoJointMissingThatWasSeen) {
+  // Out of place in all of the second window, frames 95 to 205: flags would leave nothing of it.
+  Clip noisy = limbs(400);
+  noisy.samples.block(90, 15, 120, 3).array() += 0.7;
+
+  const Denoised result = cleaned(noisy, {.window = 100, .overlap = 10});
+
+  EXPECT_TRUE(result.clip.samples.allFinite());
+}
+
 TEST(Automatic, ScalesWithTheUnitOfLength) {
   const Clip noisy = with_bursts(limbs(300), 20);
   const Clip expected = cleaned(noisy).clip;

@@ -49,6 +49,19 @@ void drop(const Mask& joints, Matrix& samples) {
       if (joints(i, j)) samples.row(i).segment<3>(3 * j).setConstant(missing);
 }
 
+// Takes flags back where a window would be left with hardly a sample of a joint: rather wrong than
+// nothing to go by.
+void spare_hopeless(const Mask& seen, const Spans& spans, Mask& bad) {
+  constexpr double least_share = 0.05;
+  for (const Span& span : spans)
+    for (Index j = 0; j < bad.cols(); ++j) {
+      const auto present = seen.col(j).segment(span.first, span.frames());
+      auto flagged = bad.col(j).segment(span.first, span.frames());
+      const auto left = static_cast<double>((present && !flagged).count());
+      if (left < least_share * static_cast<double>(present.count())) flagged.setConstant(false);
+    }
+}
+
 // Takes out what the body says is wrong.
 void look_at_body(double frame_rate, Prepared& prepared) {
   const BodyTake first = body_take(prepared.samples, frame_rate);
@@ -68,14 +81,15 @@ void look_at_body(double frame_rate, Prepared& prepared) {
     const Mask trusted = flags.consistent && !flags.bad && take.seen;
     flags.bad = flags.bad || jump_flags(take, trusted, body, known.size);
   }
+  spare_hopeless(take.seen, prepared.spans, flags.bad);
   drop(flags.bad, prepared.samples);
   known.vouched = flags.vouched && !flags.bad;
 }
 
 Prepared prepare(const Clip& take, const Automatic& method) {
   Prepared prepared{.samples = take.samples, .knowledge = {}, .spans = {}};
-  if (method.body == BodyRules::on && has_body(take)) look_at_body(rate_of(take), prepared);
   prepared.spans = overlapping_spans(plan(method, take.frames()), method.overlap);
+  if (method.body == BodyRules::on && has_body(take)) look_at_body(rate_of(take), prepared);
   return prepared;
 }
 
