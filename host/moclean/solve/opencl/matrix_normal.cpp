@@ -259,6 +259,7 @@ void MatrixNormalSolver::solve(const SegmentBatch& data, Index first, Index last
         std::vector<std::int32_t>(run.windows(), static_cast<std::int32_t>(data.columns())));
     first_smoothing(run, method);
     run.iterations.fill_zero();
+    run.S.read(run.host.storage());
   }
   const int steps = method.soft_steps + method.hard_steps;
   for (int step = 0; step < steps && run.batch.active_count() > 0; ++step) {
@@ -266,11 +267,10 @@ void MatrixNormalSolver::solve(const SegmentBatch& data, Index first, Index last
       device_.finish();
       throw Cancelled();
     }
-    run.S.read(run.host.storage());
     learn(run);
     weigh(run);
     smooth(run, method);
-    run.S.read(run.host.storage());
+    run.S.read(run.host.storage());  // for the noise, and for the next step to learn from
     for (const std::int32_t b : run.batch.active())
       run.window(b).estimate_noise(run.host.segment(b));
   }
