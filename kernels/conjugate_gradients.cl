@@ -15,6 +15,8 @@
 
 #include "tiles.cl"
 
+#define AHEAD 12  // rows from a row to what is fetched for the recurrences below or above it
+
 #ifndef CHUNK
 #error "CHUNK is not defined: rows from the second differences to their product with R"
 #endif
@@ -56,6 +58,11 @@ INLINE vreal solve_upwards(const segment_t s, vreal q, size_t begin,
   size_t at = begin + s.rows * (size_t)s.pitch;
   for (int i = s.rows - 1; i >= 0; --i) {
     at -= s.pitch;
+    const size_t next = at - min(AHEAD, i) * (size_t)s.pitch;
+    PREFETCH(inverse_pivot + next);
+    PREFETCH(z + next);
+    PREFETCH(first_band + next);
+    PREFETCH(r + next);
     const vreal inverse = load(inverse_pivot + at);
     const vreal l2 = coupled(i, s.rows) * q * inverse;  // L(i + 2, i)
     const vreal value = fma(-l1, z1, fma(-l2, z2, load(z + at) * inverse));
@@ -156,6 +163,14 @@ kernel void update(global const segment_t* segments,       // [segments]
   vreal y1 = 0, y2 = 0, inverse1 = 0, inverse2 = 0;
   size_t at = begin;
   for (int i = 0; i < s.rows; ++i, at += s.pitch) {
+    const size_t next = at + AHEAD * (size_t)s.pitch;
+    PREFETCH(motion + next);
+    PREFETCH(p + next);
+    PREFETCH(product + next);
+    PREFETCH(r + next);
+    PREFETCH(z + next);
+    PREFETCH(first_band + next);
+    PREFETCH(inverse_pivot + next);
     store(motion + at, fma(alpha, load(p + at), load(motion + at)));
     const vreal rest = fma(-alpha, load(product + at), load(r + at));
     store(r + at, rest);
@@ -213,15 +228,26 @@ typedef struct {
   global const real *scratch, *R;  // Delta'Delta p
   global const real *weights, *p;
   global real* product;
+  global const real *z_next, *p_next;  // what the next chunk begins with
   int rows, pitch, depth;
 } chunk_t;
+
+// Rows of what the next chunk begins with, another matrix per panel, for add_product to fetch.
+INLINE global const real* fetched(const chunk_t c, int row, int column) {
+  const size_t at = row * (size_t)c.pitch;
+  const int panel = column / TILE_COLUMNS;
+  if (panel == 0) return c.z_next + at;
+  if (panel == 1) return c.p_next + at;
+  return (panel == 2 ? c.weights : c.product) + CHUNK * (size_t)c.pitch + at;
+}
 
 // q = W o p + scratch R for a tile; returns the sum of p q. `whole` as a constant: no row of the
 // tile lies past the end.
 INLINE vreal product_tile(const chunk_t c, int row, int column, const int width, const int whole) {
   tile_t tile;
   clear_tile(&tile, width);
-  add_product(&tile, c.scratch, c.pitch, c.R, c.pitch, c.depth, row, c.rows, column, width);
+  add_product(&tile, c.scratch, c.pitch, c.R, c.pitch, c.depth, row, c.rows, column, width,
+              fetched(c, row, column));
   vreal sum = 0;
   size_t at = row * (size_t)c.pitch + column;
 #pragma unroll
@@ -291,8 +317,9 @@ kernel void direction(global const segment_t* segments,  // [segments]
     for (int column = 0; column < s.pitch; column += VW)
       differences(c, s, row, chunk_end, column, p, own);
     const size_t at = c.begin + row * (size_t)s.pitch;
-    const chunk_t chunk = {own,          R + s.square,    weights + at, p + at,
-                           product + at, chunk_end - row, s.pitch,      s.order};
+    const size_t next = at + CHUNK * (size_t)s.pitch;
+    const chunk_t chunk = {own,      R + s.square,    weights + at,    p + at,  product + at,
+                           z + next, p_before + next, chunk_end - row, s.pitch, s.order};
     sum += product_rows(chunk);
   }
   partial_pq[s.first_block + block.block] = lane_sum(sum);

@@ -34,13 +34,14 @@ INLINE void product(global const real* left, int left_pitch, global const real* 
   tile_t tile;
   if (column + TILE_COLUMNS <= pitch) {
     clear_tile(&tile, TILE_VECTORS);
-    add_product(&tile, left, left_pitch, right, pitch, depth, row, row_end, column, TILE_VECTORS);
+    add_product(&tile, left, left_pitch, right, pitch, depth, row, row_end, column, TILE_VECTORS,
+                0);
     store_tile(&tile, target, pitch, row, row_end, column, TILE_VECTORS);
     return;
   }
   for (; column < pitch; column += VW) {
     clear_tile(&tile, 1);
-    add_product(&tile, left, left_pitch, right, pitch, depth, row, row_end, column, 1);
+    add_product(&tile, left, left_pitch, right, pitch, depth, row, row_end, column, 1, 0);
     store_tile(&tile, target, pitch, row, row_end, column, 1);
   }
 }

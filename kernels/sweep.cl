@@ -89,7 +89,7 @@ INLINE void sweep_tile(const scalars_t k, const chunk_t c, int order_ea, int kee
                        int column, const int width, sums_t* sums) {
   tile_t a;
   clear_tile(&a, width);
-  add_product(&a, c.left, c.left_pitch, c.right, c.pitch, c.depth, row, c.rows, column, width);
+  add_product(&a, c.left, c.left_pitch, c.right, c.pitch, c.depth, row, c.rows, column, width, 0);
   if (keep) store_tile(&a, c.a, c.pitch, row, c.rows, column, width);
   if (order_ea)
     update_tile(k, &a, c, 1, 0, row, column, width, sums);
@@ -127,7 +127,7 @@ INLINE void project_tile(const chunk_t c, global const real* v, global const rea
                          global real* projected, int order, int row, int column, const int width) {
   tile_t tile;
   clear_tile(&tile, width);
-  add_product(&tile, c.x, c.pitch, v, c.pitch, order, row, c.rows, column, width);
+  add_product(&tile, c.x, c.pitch, v, c.pitch, order, row, c.rows, column, width, 0);
 #pragma unroll
   for (int r = 0; r < TILE_ROWS; ++r)
 #pragma unroll

@@ -85,15 +85,17 @@ INLINE void add_outer_products(tile_t* tile, global const real* m, int pitch, in
     add_weighted_rows(tile, m, pitch, depth, weight, row, column, width, 0);
 }
 
-// tile += left[row ..][0 .. depth) * right[0 .. depth)[column ..].
+// tile += left[row ..][0 .. depth) * right[0 .. depth)[column ..]. Meanwhile `depth` vectors from
+// `ahead` on, if not null, are brought into the caches.
 INLINE void add_product(tile_t* tile, global const real* left, int left_pitch,
                         global const real* right, int pitch, int depth, int row, int row_end,
-                        int column, const int width) {
+                        int column, const int width, global const real* ahead) {
   global const real* l[TILE_ROWS];
 #pragma unroll
   for (int r = 0; r < TILE_ROWS; ++r) l[r] = left + min(row + r, row_end - 1) * (size_t)left_pitch;
   for (int k = 0; k < depth; ++k) {
     global const real* b = right + k * (size_t)pitch + column;
+    if (ahead) PREFETCH(ahead + k * VW);
 #pragma unroll
     for (int r = 0; r < TILE_ROWS; ++r) {
       const vreal a = l[r][k];

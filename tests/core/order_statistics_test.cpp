@@ -1,5 +1,8 @@
 #include "moclean/core/order_statistics.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <random>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -19,6 +22,34 @@ TEST(Quantile, InterpolatesBetweenTheNearestOrderStatistics) {
   EXPECT_DOUBLE_EQ(quantile_of({4, 1, 3, 2}, 0.5), 2.5);
   EXPECT_DOUBLE_EQ(quantile_of({4, 1, 3, 2}, 1), 4);
   EXPECT_DOUBLE_EQ(quantile_of({7}, 0.3), 7);
+}
+
+// Type 7 as it is defined, by sorting.
+double quantile_by_sorting(std::vector<double> values, double q) {
+  std::ranges::sort(values);
+  const double place = q * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<std::size_t>(place);
+  const double low = values[below], high = values[std::min(below + 1, values.size() - 1)];
+  return low + (place - static_cast<double>(below)) * (high - low);
+}
+
+TEST(Quantile, OfManyValuesIsThatOfTheSortedOnes) {
+  std::mt19937 random(1);
+  std::exponential_distribution<double> skewed;
+  for (const std::size_t size : {2047u, 2048u, 5000u, 70001u})
+    for (int kind = 0; kind < 5; ++kind) {
+      std::vector<double> values(size);
+      for (std::size_t i = 0; i < size; ++i) {
+        const auto x = static_cast<double>(i);
+        // Rising, random, almost all equal, few different, and small where a sample would look.
+        const double of_kind[] = {x, skewed(random), i == 7 ? -1.0 : 3.0, std::fmod(x, 3),
+                                  i % (size / 512) == 0 ? -x : x};
+        values[i] = of_kind[kind];
+      }
+      for (const double q : {0.0, 1e-4, 0.25, 0.5, 0.9, 0.9999, 1.0})
+        EXPECT_DOUBLE_EQ(quantile_of(values, q), quantile_by_sorting(values, q))
+            << size << " values, kind " << kind << ", q " << q;
+    }
 }
 
 TEST(RunningMedian, ShrinksItsWindowAtBothEnds) {

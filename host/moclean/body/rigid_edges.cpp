@@ -21,29 +21,40 @@ constexpr double tail = 0.95, deviations_of_tail = 1.96;
 struct Pair {
   RigidEdge edge;
   bool steady = false;  // not a posture that is held for half of the take
-  double tail_spread = std::numeric_limits<double>::infinity();  // by the largest deviations
 };
 
-Pair look_at(const BodyTake& take, Index first, Index second, double smallest) {
-  Pair pair{.edge = {.first = first, .second = second}};
-  std::vector<double> distances;
+// Distances of two joints in the frames that are looked at.
+std::vector<double> distances(const BodyTake& take, Index first, Index second) {
+  std::vector<double> found;
   const Index step = std::max<Index>(1, take.frames() / enough_frames);
   for (Index i = 0; i < take.frames(); i += step)
     if (take.seen(i, first) && take.seen(i, second))
-      distances.push_back((take.position(i, first) - take.position(i, second)).norm());
-  const Core core = steady_core(distances);
+      found.push_back((take.position(i, first) - take.position(i, second)).norm());
+  return found;
+}
+
+Pair look_at(const BodyTake& take, Index first, Index second, double smallest) {
+  Pair pair{.edge = {.first = first, .second = second}};
+  std::vector<double> values = distances(take, first, second);
+  const Core core = steady_core(values);
   pair.edge.length = core.centre;
   pair.edge.spread = core.spread;
   if (!std::isfinite(core.spread)) return pair;
-  for (double& d : distances) d = std::abs(d - core.centre);
-  pair.tail_spread = quantile(distances, tail) / deviations_of_tail;
   const double limit = cut * std::max(core.spread, smallest);
-  const auto off = std::ranges::count_if(distances, [&](double d) { return d > limit; });
+  const auto off =
+      std::ranges::count_if(values, [&](double d) { return std::abs(d - core.centre) > limit; });
   const bool exact = core.spread < exact_edge * smallest;  // may be off: a burst in a short take
-  pair.steady = exact || static_cast<double>(off) <= broken * static_cast<double>(distances.size());
+  pair.steady = exact || static_cast<double>(off) <= broken * static_cast<double>(values.size());
   pair.edge.hard = pair.steady && core.spread < hard_edge * smallest;
   pair.edge.exact = exact;
   return pair;
+}
+
+// The spread of a pair's distances by their largest deviations.
+double tail_spread(const BodyTake& take, const RigidEdge& edge) {
+  std::vector<double> values = distances(take, edge.first, edge.second);
+  for (double& d : values) d = std::abs(d - edge.length);
+  return quantile(values, tail) / deviations_of_tail;
 }
 
 // Per joint the spread of its sixth steadiest pair.
@@ -101,7 +112,7 @@ RigidBody learn_rigid_body(const BodyTake& take, double size, double smallest) {
   for (const Pair& pair : pairs) {
     const auto& [first, second, length, spread, hard, exact] = pair.edge;
     if (rigid && pair.steady && (judged(first) || judged(second))) body.edges.push_back(pair.edge);
-    if (!rigid && pair.tail_spread < soft_edge * size)
+    if (!rigid && tail_spread(take, pair.edge) < soft_edge * size)
       body.edges.push_back({first, second, length, spread, false, true});
   }
   return body;

@@ -1,9 +1,9 @@
 #include "moclean/body/rigid_flags.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
-#include <utility>
 
 #include "moclean/core/linear_fill.hpp"
 #include "moclean/core/order_statistics.hpp"
@@ -33,64 +33,90 @@ Distances distances(const BodyTake& take, std::span<const RigidEdge> edges) {
   return d;
 }
 
+using Row = Eigen::Array<double, 1, Eigen::Dynamic>;
+using Marks = Eigen::Array<bool, 1, Eigen::Dynamic>;
+
 // Centres and limits to compare distances with, one per edge.
 struct Limits {
-  std::vector<double> centre, limit;
+  explicit Limits(std::size_t edges)
+      : centre(static_cast<Index>(edges)), limit(static_cast<Index>(edges)) {}
+
+  Row centre, limit;
 };
 
-bool is_off(const Distances& d, const Limits& limits, Index frame, std::size_t edge) {
-  const auto e = static_cast<Index>(edge);
-  return d.both(frame, e) &&
-         std::abs(d.values(frame, e) - limits.centre[edge]) > limits.limit[edge];
+// Which edges of a frame are off.
+void compare(const Distances& d, const Limits& limits, Index frame, Marks& off) {
+  off = d.both.row(frame) && (d.values.row(frame).array() - limits.centre).abs() > limits.limit;
 }
 
-// The votes of one frame: per joint the weight of its edges, and of those that are off.
-struct Votes {
-  std::vector<double> all, wrong;
-
-  double share(std::size_t joint) const { return all[joint] > 0 ? wrong[joint] / all[joint] : 0; }
-};
-
-// Blames the joints of one frame one after the other, the worst first.
-void blame(const RigidBody& body, const std::vector<double>& weight, std::vector<bool> off,
-           Index frame, Mask& bad) {
-  const std::size_t joints = body.judged.size();
-  std::vector<double> left = weight;  // of the edges between joints that are not blamed
-  for (std::size_t round = 0; round + 3 < joints; ++round) {
-    Votes votes{std::vector<double>(joints, 0), std::vector<double>(joints, 0)};
-    for (std::size_t e = 0; e < left.size(); ++e)
-      for (const Index j : {body.edges[e].first, body.edges[e].second}) {
-        votes.all[static_cast<std::size_t>(j)] += left[e];
-        if (off[e]) votes.wrong[static_cast<std::size_t>(j)] += left[e];
-      }
-    std::size_t worst = joints;
-    for (std::size_t j = 0; j < joints; ++j)
-      if (body.judged[j] && (worst == joints || votes.share(j) > votes.share(worst))) worst = j;
-    if (worst == joints || votes.share(worst) <= vote) return;
-    bad(frame, static_cast<Index>(worst)) = true;
-    for (std::size_t e = 0; e < left.size(); ++e)
-      if (std::cmp_equal(body.edges[e].first, worst) || std::cmp_equal(body.edges[e].second, worst))
-        left[e] = 0;
+// The votes of one frame, by joint.
+class Votes {
+ public:
+  explicit Votes(const RigidBody& body)
+      : body_(body), own_(body.judged.size()), share_(body.judged.size()) {
+    for (std::size_t e = 0; e < body.edges.size(); ++e)
+      for (const std::size_t j : ends(e)) own_[j].push_back(e);
   }
-}
+
+  // Blames the joints of a frame one after the other, the worst first. `weight` is that of its
+  // edges, 0 where an end was not seen; `off` tells the wrong ones.
+  void blame(const Row& weight, const Marks& off, Index frame, Mask& bad) {
+    left_ = weight;
+    for (std::size_t j = 0; j < own_.size(); ++j) count(j, off);
+    for (std::size_t round = 0; round + 3 < own_.size(); ++round) {
+      const std::size_t worst = largest_share();
+      if (worst == own_.size() || share_[worst] <= vote) return;
+      bad(frame, static_cast<Index>(worst)) = true;
+      for (const std::size_t e : own_[worst]) left_(static_cast<Index>(e)) = 0;
+      for (const std::size_t e : own_[worst])
+        for (const std::size_t j : ends(e)) count(j, off);
+    }
+  }
+
+ private:
+  std::array<std::size_t, 2> ends(std::size_t edge) const {
+    return {static_cast<std::size_t>(body_.edges[edge].first),
+            static_cast<std::size_t>(body_.edges[edge].second)};
+  }
+
+  // The share of a joint's edges between joints not blamed that are off, by weight.
+  void count(std::size_t joint, const Marks& off) {
+    double all = 0, wrong = 0;
+    for (const std::size_t e : own_[joint]) {
+      const auto edge = static_cast<Index>(e);
+      all += left_(edge);
+      if (off(edge)) wrong += left_(edge);
+    }
+    share_[joint] = all > 0 ? wrong / all : 0;
+  }
+
+  // Of the joints that can be judged; the number of joints if there is none.
+  std::size_t largest_share() const {
+    std::size_t worst = share_.size();
+    for (std::size_t j = 0; j < share_.size(); ++j)
+      if (body_.judged[j] && (worst == share_.size() || share_[j] > share_[worst])) worst = j;
+    return worst;
+  }
+
+  const RigidBody& body_;
+  std::vector<std::vector<std::size_t>> own_;  // edges of every joint
+  std::vector<double> share_;
+  Row left_;  // weights of the edges between joints that are not blamed
+};
 
 void blame_all(const RigidBody& body, const Distances& d, const Limits& limits, Mask& bad) {
-  std::vector<double> weight(body.edges.size());
-  std::vector<bool> off(body.edges.size());
+  const Row weight = limits.limit.square().inverse();
+  Votes votes(body);
+  Marks off(weight.size());
   for (Index i = 0; i < d.values.rows(); ++i) {
-    bool any = false;
-    for (std::size_t e = 0; e < weight.size(); ++e) {
-      weight[e] = d.both(i, static_cast<Index>(e)) ? 1 / (limits.limit[e] * limits.limit[e]) : 0;
-      off[e] = is_off(d, limits, i, e);
-      any = any || off[e];
-    }
-    if (any) blame(body, weight, off, i, bad);
+    compare(d, limits, i, off);
+    if (off.any()) votes.blame(d.both.row(i).select(weight, 0), off, i, bad);
   }
 }
 
 // Running medians in the place of the distances, and limits that fit them.
 Limits slow_down(const BodyTake& take, double size, Distances& d) {
-  Limits limits;
+  Limits limits(static_cast<std::size_t>(d.values.cols()));
   std::vector<double> channel(static_cast<std::size_t>(take.frames())), seen;
   for (Index e = 0; e < d.values.cols(); ++e) {
     Eigen::Map<Eigen::VectorXd> values(channel.data(), take.frames());
@@ -102,8 +128,8 @@ Limits slow_down(const BodyTake& take, double size, Distances& d) {
     for (Index i = 0; i < take.frames(); ++i)
       if (d.both(i, e)) seen.push_back(values(i));
     const Core core = steady_core(seen);
-    limits.centre.push_back(core.centre);
-    limits.limit.push_back(cut * std::max(core.spread, least_spread * size));
+    limits.centre(e) = core.centre;
+    limits.limit(e) = cut * std::max(core.spread, least_spread * size);
   }
   return limits;
 }
@@ -128,15 +154,17 @@ void vouch(const RigidBody& body, const Distances& d, const Limits& limits, Rigi
   for (const RigidEdge& edge : body.edges)
     if (edge.hard)
       for (const Index j : {edge.first, edge.second}) ++degree[static_cast<std::size_t>(j)];
+  Marks off(d.values.cols());
   for (Index i = 0; i < d.values.rows(); ++i) {
+    compare(d, limits, i, off);
     std::ranges::fill(right, 0);
     std::fill(wrong.begin(), wrong.end(), false);
     for (std::size_t e = 0; e < body.edges.size(); ++e) {
-      if (!body.edges[e].hard || !d.both(i, static_cast<Index>(e))) continue;
-      const bool off = is_off(d, limits, i, e);
+      const auto edge = static_cast<Index>(e);
+      if (!body.edges[e].hard || !d.both(i, edge)) continue;
       for (const Index j : {body.edges[e].first, body.edges[e].second}) {
-        right[static_cast<std::size_t>(j)] += !off;
-        if (off) wrong[static_cast<std::size_t>(j)] = true;
+        right[static_cast<std::size_t>(j)] += !off(edge);
+        if (off(edge)) wrong[static_cast<std::size_t>(j)] = true;
       }
     }
     for (std::size_t j = 0; j < joints; ++j) {
@@ -154,11 +182,12 @@ RigidFlags judge(const BodyTake& take, const RigidBody& body, double size, doubl
   RigidFlags flags{none, none, none};
   if (!body.is_rigid()) return flags;
   Distances d = distances(take, body.edges);
-  Limits limits;
+  Limits limits(body.edges.size());
   std::vector<double> spreads;
-  for (const RigidEdge& edge : body.edges) {
-    limits.centre.push_back(edge.length);
-    limits.limit.push_back(cut * std::max(edge.spread, smallest));
+  for (std::size_t e = 0; e < body.edges.size(); ++e) {
+    const RigidEdge& edge = body.edges[e];
+    limits.centre(static_cast<Index>(e)) = edge.length;
+    limits.limit(static_cast<Index>(e)) = cut * std::max(edge.spread, smallest);
     spreads.push_back(edge.spread);
   }
   blame_all(body, d, limits, flags.bad);

@@ -18,6 +18,19 @@ class SortedWindow {
     if (!std::isnan(x)) values_.erase(std::ranges::lower_bound(values_, x));
   }
 
+  /// remove(before), insert(x), in one pass over what lies between the two.
+  void replace(double before, double x) {
+    if (std::isnan(before) || std::isnan(x)) {
+      remove(before);
+      insert(x);
+      return;
+    }
+    auto at = std::ranges::lower_bound(values_, before);
+    for (; at + 1 != values_.end() && at[1] < x; ++at) at[0] = at[1];
+    for (; at != values_.begin() && at[-1] > x; --at) at[0] = at[-1];
+    *at = x;
+  }
+
   /// The mean of the two in the middle of an even number; the window is not empty.
   double median() const {
     const std::size_t n = values_.size();

@@ -36,6 +36,10 @@ ChainDenoiser::ChainDenoiser(Chain chain, Backend* backend, int jobs)
   if (chain_.empty()) throw ArgumentError("a chain needs at least one method");
   if (!backend && needs_backend(chain_))
     throw ArgumentError(name_of(*first_on_backend(chain_)) + " needs a backend");
+  for (const Step& step : chain_) {
+    if (const auto* low_rank = std::get_if<LowRank>(&step)) backend_->prepare(low_rank->method);
+    if (std::holds_alternative<Automatic>(step)) backend_->prepare(MatrixNormal{});
+  }
 }
 
 std::vector<Denoised> ChainDenoiser::solve(const Step& step, std::span<const Clip> takes,

@@ -66,7 +66,7 @@ std::string needs_frame_rate(const Chain& chain);
 /// but in columns without a sample (completion, interpolate), or to the end.
 bool accepts_missing(const Chain& chain);
 
-/// Whether the result has a standard deviation per sample (Denoised::sigma). No method has one yet.
+/// Whether the result has a standard deviation per sample (Denoised::sigma).
 bool has_sigma(const Chain& chain);
 
 /// Runs a chain. The motion is what the last step made; the outliers are those of the method if it
@@ -74,8 +74,9 @@ bool has_sigma(const Chain& chain);
 /// first matrix method; a chain of filters has none.
 class ChainDenoiser final : public Denoiser {
  public:
-  /// `backend` computes the matrix methods and has to outlive this object; it may be null for a
-  /// chain without any, else ArgumentError. Filters run on up to `jobs` threads.
+  /// `backend` computes the matrix methods, is made ready for them and has to outlive this object;
+  /// it may be null for a chain without any, else ArgumentError. Filters run on up to `jobs`
+  /// threads.
   ChainDenoiser(Chain chain, Backend* backend, int jobs = 1);
 
   /// See Denoiser. Progress counts the segments of all matrix methods; a chain of filters reports

@@ -78,11 +78,15 @@ int vector_width(const Device& device, NumberType type) {
   return type == NumberType::float32 && doubles > 1 ? 2 * doubles : doubles;
 }
 
-Defines common_defines(const Device& device, NumberType type) {
+void require_double_precision(const Device& device) {
   if (!device.info().fp64)
     throw DeviceError("device '" + device.info().name +
                       "' has no double precision (cl_khr_fp64), which this solver needs; choose "
                       "another with --device, or --backend reference");
+}
+
+Defines common_defines(const Device& device, NumberType type) {
+  require_double_precision(device);
   return {{"REAL", type == NumberType::float64 ? "double" : "float"},
           {"VW", std::to_string(vector_width(device, type))},
           {"BLOCK_ROWS", std::to_string(block_rows)}};

@@ -103,9 +103,12 @@ inline constexpr NumberType number_type = sizeof(Real) == sizeof(double) ? Numbe
 /// float32); reaches them as VW.
 int vector_width(const Device& device, NumberType type = NumberType::float64);
 
-/// -D options every kernel of ours needs on this device: REAL, VW, BLOCK_ROWS.
 /// Throws DeviceError if the device has no double precision, which every solver needs for the
 /// eigenproblem whatever the type of its stacked matrices.
+void require_double_precision(const Device& device);
+
+/// -D options every kernel of ours needs on this device: REAL, VW, BLOCK_ROWS. Throws as
+/// require_double_precision() does.
 Defines common_defines(const Device& device, NumberType type = NumberType::float64);
 
 }  // namespace moclean

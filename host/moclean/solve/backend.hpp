@@ -80,6 +80,10 @@ class Backend {
   /// For reports: "reference (Eigen 3.4.0, 2 threads)", "opencl (<device>)".
   virtual std::string name() const = 0;
 
+  /// Gets ready for a method: compiles its kernels, say. solve() does that otherwise when it meets
+  /// the method first. Nothing is asked of the method's parameters.
+  virtual void prepare(const Method& /*method*/) {}
+
   /// Solves every segment. The result of a segment depends on its own data and the method only, bit
   /// for bit: not on its neighbours or its place in the batch. Throws ShapeError naming row and
   /// column if the data holds infinity, or NaN that the method does not accept, ArgumentError for

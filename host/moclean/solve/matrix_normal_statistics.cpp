@@ -18,6 +18,15 @@ std::vector<double> observed_of(const auto& values) {
   return found;
 }
 
+// x, y, z, each at least their median.
+void raise_to_median(double& x, double& y, double& z) {
+  const double low = std::min(x, y), high = std::max(x, y);
+  const double middle = std::max(low, std::min(high, z));
+  x = std::max(x, middle);
+  y = std::max(y, middle);
+  z = std::max(z, middle);
+}
+
 }  // namespace
 
 double column_scale(const ConstMatrixRef& data) {
@@ -41,6 +50,7 @@ double dense_noise_level(const ConstMatrixRef& data) {
   // The lower quartile of |x| of a standard normal x; sum of the squared binomials 1 4 6 4 1.
   constexpr double quartile = 0.3186, squares = 70;
   std::vector<double> differences;
+  differences.reserve(static_cast<std::size_t>(data.size()));
   for (Index i = 0; i + 4 < data.rows(); ++i)
     for (Index j = 0; j < data.cols(); ++j) {
       const double d = data(i, j) - 4 * data(i + 1, j) + 6 * data(i + 2, j) - 4 * data(i + 3, j) +
@@ -54,20 +64,22 @@ double dense_noise_level(const ConstMatrixRef& data) {
 Matrix reach(const ConstMatrixRef& weights) {
   constexpr double in_use = 0.3;
   constexpr double beyond_end = 3;
+  using Row = Eigen::Array<double, 1, Eigen::Dynamic>;
   const Index frames = weights.rows();
   Matrix h(frames, weights.cols());
-  // First the distance to the sample before, negative for "none", then both together.
-  for (Index j = 0; j < weights.cols(); ++j) {
-    double a = beyond_end + 1;
-    for (Index i = 0; i < frames; ++i, ++a) {
-      h(i, j) = a;
-      if (weights(i, j) > in_use) a = 0;
-    }
-    double b = beyond_end + 1;
-    for (Index i = frames - 1; i >= 0; --i, ++b) {
-      h(i, j) = 2 * h(i, j) * b / (h(i, j) + b);
-      if (weights(i, j) > in_use) b = 0;
-    }
+  // First the distance to the sample before, then both together.
+  const Row end = Row::Constant(weights.cols(), beyond_end + 1);
+  Row away = end;
+  const auto next = [&](Index i) { away = (weights.row(i).array() > in_use).select(1, away + 1); };
+  for (Index i = 0; i < frames; ++i) {
+    h.row(i) = away;
+    next(i);
+  }
+  away = end;
+  for (Index i = frames - 1; i >= 0; --i) {
+    auto row = h.row(i).array();
+    row = 2 * row * away / (row + away);
+    next(i);
   }
   return h;
 }
@@ -78,6 +90,10 @@ void raise_to_joint_median(Matrix& energies, Index joint_columns) {
   for (Index i = 0; i < energies.rows(); ++i)
     for (Index j = 0; j < energies.cols(); j += joint_columns) {
       auto entries = energies.row(i).segment(j, std::min(joint_columns, energies.cols() - j));
+      if (entries.size() == 3) {
+        raise_to_median(entries(0), entries(1), entries(2));
+        continue;
+      }
       joint.assign(entries.begin(), entries.end());
       entries = entries.cwiseMax(median(joint));
     }

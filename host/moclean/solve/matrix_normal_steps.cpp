@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <iterator>
 #include <limits>
 #include <vector>
 
@@ -121,12 +122,12 @@ Eigen::VectorXd MatrixNormalWindow::inverse_spectrum(const Eigen::VectorXd& eige
 // Squared residuals in predictive deviations: the larger of the entry's own and the median of its
 // joint's.
 Matrix MatrixNormalWindow::energies(const ConstMatrixRef& motion) const {
-  Matrix energy(frames_, columns());
-  const Matrix h = reach(weights_);
+  Matrix energy = reach(weights_);
   for (Index i = 0; i < frames_; ++i)
-    for (Index j = 0; j < columns(); ++j)
-      energy(i, j) = observed_(i, j) * square(data_(i, j) - motion(i, j)) /
-                     (square(sigma_) + h(i, j) * predictive_(j) / 6);
+    for (Index j = 0; j < columns(); ++j) {
+      const double variance = square(sigma_) + energy(i, j) * predictive_(j) / 6;
+      energy(i, j) = observed_(i, j) * square(data_(i, j) - motion(i, j)) / variance;
+    }
   raise_to_joint_median(energy, method_.joint_columns);
   return energy;
 }
@@ -204,15 +205,24 @@ void MatrixNormalWindow::build_on_lengths(const ConstMatrixRef& motion) {
     }
 }
 
-void MatrixNormalWindow::estimate_noise(const ConstMatrixRef& motion) {
-  std::vector<double> residuals;
+// Magnitudes of the residuals that tell the noise.
+std::vector<double> MatrixNormalWindow::residuals(const ConstMatrixRef& motion) const {
+  const Eigen::VectorXd near = near_deviations * (square(sigma_) + predictive_.array() / 6).sqrt();
+  std::vector<double> found(static_cast<std::size_t>(weights_.size()));
+  std::size_t count = 0;
   for (Index i = 0; i < frames_; ++i)
     for (Index j = 0; j < columns(); ++j) {
       const double r = std::abs(data_(i, j) - motion(i, j));
-      const double near = near_deviations * std::sqrt(square(sigma_) + predictive_(j) / 6);
-      const bool counts = hard() ? weights_(i, j) > 0 : observed_(i, j) > 0 && r < near;
-      if (counts) residuals.push_back(r);
+      const bool counts = hard() ? weights_(i, j) > 0 : observed_(i, j) > 0 && r < near(j);
+      found[count] = r;  // written over by the next if it does not count: no branch
+      count += counts;
     }
+  found.resize(count);
+  return found;
+}
+
+void MatrixNormalWindow::estimate_noise(const ConstMatrixRef& motion) {
+  std::vector<double> residuals = this->residuals(motion);
   if (hard() && !residuals.empty()) {
     const double noise = square(sigma_) / share_kept(), least = least_spectrum();
     double kept = 0;
@@ -280,23 +290,26 @@ Matrix MatrixNormalWindow::deviation() const {
 Mask put_on_lengths(const std::vector<DistanceLink>& links, const Mask& free, Matrix& positions) {
   constexpr int sweeps = 5;
   Mask moved = Mask::Constant(free.rows(), free.cols(), false);
-  for (int sweep = 0; sweep < sweeps; ++sweep)
-    for (const DistanceLink& link : links) {
-      if (!link.exact) continue;
-      for (Index i = 0; i < free.rows(); ++i) {
-        const int ends = free(i, link.first) + free(i, link.second);
-        if (ends == 0) continue;
-        auto a = positions.row(i).segment<3>(3 * link.first);
-        auto b = positions.row(i).segment<3>(3 * link.second);
-        const Eigen::RowVector3d way = a - b;
-        const double length = std::max(way.norm(), std::numeric_limits<double>::min());
-        const Eigen::RowVector3d step = (1 - link.length / length) / ends * way;
-        if (free(i, link.first)) a -= step;
-        if (free(i, link.second)) b += step;
-        moved(i, link.first) = moved(i, link.first) || free(i, link.first);
-        moved(i, link.second) = moved(i, link.second) || free(i, link.second);
-      }
-    }
+  std::vector<DistanceLink> exact;
+  std::ranges::copy_if(links, std::back_inserter(exact), &DistanceLink::exact);
+  const auto fit = [&](Index i, const DistanceLink& link) {
+    const int ends = free(i, link.first) + free(i, link.second);
+    if (ends == 0) return;
+    auto a = positions.row(i).segment<3>(3 * link.first);
+    auto b = positions.row(i).segment<3>(3 * link.second);
+    const Eigen::RowVector3d way = a - b;
+    const double length = std::max(way.norm(), std::numeric_limits<double>::min());
+    const Eigen::RowVector3d step = (1 - link.length / length) / ends * way;
+    if (free(i, link.first)) a -= step;
+    if (free(i, link.second)) b += step;
+    moved(i, link.first) = moved(i, link.first) || free(i, link.first);
+    moved(i, link.second) = moved(i, link.second) || free(i, link.second);
+  };
+  for (Index i = 0; i < free.rows(); ++i) {
+    if (!free.row(i).any()) continue;
+    for (int sweep = 0; sweep < sweeps; ++sweep)
+      for (const DistanceLink& link : exact) fit(i, link);
+  }
   return moved;
 }
 

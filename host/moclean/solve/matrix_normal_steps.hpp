@@ -89,6 +89,7 @@ class MatrixNormalWindow {
   void weigh_hard(const Matrix& energy, const ConstMatrixRef& motion);
   void reinstate(Mask& good) const;
   void build_on_lengths(const ConstMatrixRef& motion);
+  std::vector<double> residuals(const ConstMatrixRef& motion) const;
 
   MatrixNormal method_;
   JointKnowledge known_;

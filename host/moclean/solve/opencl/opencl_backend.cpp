@@ -40,20 +40,21 @@ class OpenClBackend::Worker {
  public:
   /// Uses the queue of `device` itself. `tuning` has to outlive the worker.
   Worker(const Device& device, Precision precision, const Tuning& tuning)
-      : tuning_(tuning), device_(device), robust_pca_(solver_of(device_, precision, tuning)) {}
+      : tuning_(tuning), precision_(precision), device_(device) {}
 
   /// Has a queue of its own.
   Worker(const Device& device, Device::AnotherQueue another, Precision precision,
          const Tuning& tuning)
       : tuning_(tuning),
+        precision_(precision),
         own_(std::in_place, device, another),
-        device_(*own_),
-        robust_pca_(solver_of(device_, precision, tuning)) {}
+        device_(*own_) {}
 
-  /// use(solver) with the solver of a method; those but robust PCA's are made at their first use.
+  /// use(solver) with the solver of a method, which is made at its first use.
   template <class Use>
   void with(const RobustPca&, const Use& use) {
-    std::visit(use, robust_pca_);
+    if (!robust_pca_) robust_pca_.emplace(solver_of(device_, precision_, tuning_));
+    std::visit(use, *robust_pca_);
   }
   template <class Use>
   void with(const MatrixCompletion&, const Use& use) {
@@ -87,9 +88,10 @@ class OpenClBackend::Worker {
   }
 
   const Tuning& tuning_;
+  Precision precision_;
   std::optional<Device> own_;
   const Device& device_;
-  RobustPcaSolver robust_pca_;
+  std::optional<RobustPcaSolver> robust_pca_;
   std::optional<opencl::SpectralSolver> spectral_;
   std::optional<opencl::MatrixCompletionSolver> completion_;
   std::optional<opencl::TemporalRobustPcaSolver> temporal_;
@@ -98,6 +100,8 @@ class OpenClBackend::Worker {
 
 OpenClBackend::OpenClBackend(const Device& device, const OpenClOptions& options)
     : device_(device), options_(options), tuning_(tuning_of(device, options)) {
+  moclean::check(tuning_);
+  require_double_precision(device);
   if (options_.memory_limit == 0) options_.memory_limit = device.info().usable_memory();
   workers_.push_back(std::make_unique<Worker>(device, options.precision, tuning_));
 }
@@ -107,6 +111,11 @@ OpenClBackend::~OpenClBackend() = default;
 std::string OpenClBackend::name() const {
   return fmt::format("opencl ({}, products {}{})", device_.info().name, to_string(tuning_.products),
                      options_.precision == Precision::mixed ? ", mixed precision" : "");
+}
+
+void OpenClBackend::prepare(const Method& method) {
+  std::visit([this](const auto& chosen) { workers_.front()->with(chosen, [](const auto&) {}); },
+             method);
 }
 
 opencl::SegmentSize OpenClBackend::size_of(const SegmentBatch& data, Index b,

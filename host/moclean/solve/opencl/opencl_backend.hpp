@@ -31,9 +31,9 @@ inline constexpr double mixed_tolerance = 1e-6;
 /// DeviceError if the device has no double precision.
 class OpenClBackend final : public Backend {
  public:
-  /// `device` has to outlive the backend. Compiles the kernels. Throws ArgumentError for a tuning
-  /// out of its range, and for `products` of CLBlast in mixed precision; a `tuning` that asks for
-  /// them gets our own there.
+  /// `device` has to outlive the backend. Throws ArgumentError for a tuning out of its range, and
+  /// for `products` of CLBlast in mixed precision; a `tuning` that asks for them gets our own
+  /// there. Compiles nothing, see prepare().
   explicit OpenClBackend(const Device& device, const OpenClOptions& options = {});
   ~OpenClBackend() override;
 
@@ -41,6 +41,8 @@ class OpenClBackend final : public Backend {
 
   /// The choices in use.
   const Tuning& tuning() const { return tuning_; }
+
+  void prepare(const Method& method) override;
 
   /// See Backend. Also throws DeviceError if one segment alone exceeds the memory limit, and
   /// ArgumentError for a tolerance below mixed_tolerance in mixed precision, and for any method but
