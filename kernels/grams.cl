@@ -29,9 +29,11 @@ kernel void sum_grams(global const segment_t* segments,  // [segments]
 #if VW == 1
 typedef float vfloat;
 inline vreal widen(vfloat v) { return v; }
+inline vfloat narrowed(vreal v) { return (float)v; }
 #else
 typedef JOIN(float, VW) vfloat;
 inline vreal widen(vfloat v) { return JOIN(convert_double, VW)(v); }
+inline vfloat narrowed(vreal v) { return JOIN(convert_float, VW)(v); }
 #endif
 
 #define ENTRY vfloat
@@ -39,6 +41,11 @@ inline vreal widen(vfloat v) { return JOIN(convert_double, VW)(v); }
 #include "entry.cl"
 
 INLINE vfloat load_floats(global const float* p) { return *(global const vfloat*)p; }
+INLINE void store_floats(global float* p, vfloat v) { *(global vfloat*)p = v; }
+
+INLINE void narrow_row(global const real* from, global float* to, int pitch) {
+  for (int j = 0; j < pitch; j += VW) store_floats(to + j, narrowed(load(from + j)));
+}
 
 // G = X'X of each block of rows, for X in single precision: the products are exact and summed in
 // double. X is D, or, `shifted_data`, the X of the running iteration, of segments that take an
@@ -118,14 +125,14 @@ kernel void narrow(global const segment_t* segments,  // [segments]
   const int row = get_global_id(0);
   if (row >= s.order) return;
   const size_t at = s.square + row * (size_t)s.order_pitch;
+  const int rank = states[index].rank;
   if (!states[index].low_rank) {
-    for (int j = 0; j < s.order_pitch; ++j) w_float[at + j] = w[at + j];
+    narrow_row(w + at, w_float + at, s.order_pitch);
     return;
   }
   f_float[s.vector + row] = f[s.vector + row];
-  for (int j = 0; j < s.order_pitch; ++j) {
-    // Columns of V past the rank are what the eigenproblem left there; f is zero for them.
-    v_float[at + j] = j < states[index].rank ? v[at + j] : 0;
-    if (row < states[index].rank) z_float[at + j] = z[at + j];
-  }
+  if (row < rank) narrow_row(z + at, z_float + at, s.order_pitch);
+  narrow_row(v + at, v_float + at, (rank + VW - 1) / VW * VW);
+  // Columns of V past the rank are what the eigenproblem left there; f is zero for them.
+  for (int j = rank; j < s.order_pitch; ++j) v_float[at + j] = 0;
 }
