@@ -30,11 +30,16 @@ TEST(BatchPlan, WithoutBoundsIsOneBatch) {
 
 TEST(BatchPlan, OfNothingHasNoBatch) { EXPECT_EQ(plan_batches({}, {.queues = 2}).batches(), 0); }
 
-TEST(BatchPlan, SegmentsThatFillOneSetOfLanesStayTogether) {
-  const BatchPlan plan = plan_batches(equal_sizes(8, 10), {.queues = 2, .lanes = 8});
+TEST(BatchPlan, LanesAreLeftEmptyBeforeQueuesAre) {
+  const auto plan_of = [](std::size_t segments, int queues) {
+    return plan_batches(equal_sizes(segments, 10), {.queues = queues, .lanes = 8});
+  };
 
-  EXPECT_THAT(lengths(plan), ElementsAre(8));
-  EXPECT_EQ(plan.queues, 1) << "a second one would have nothing to do";
+  EXPECT_THAT(lengths(plan_of(8, 1)), ElementsAre(8));
+  EXPECT_THAT(lengths(plan_of(8, 2)), ElementsAre(4, 4));
+  EXPECT_THAT(lengths(plan_of(9, 4)), ElementsAre(2, 2, 2, 3));
+  EXPECT_THAT(lengths(plan_of(2, 4)), ElementsAre(1, 1));
+  EXPECT_EQ(plan_of(1, 4).queues, 1) << "a second one would have nothing to do";
 }
 
 TEST(BatchPlan, QueuesGetEqualShares) {

@@ -27,7 +27,8 @@ Division divide(Index segments, double bytes_of_segment, const BatchBounds& boun
   // A unit that is not full costs as much as one that is: rather all of the cache than part of it.
   const bool lanes_fit = lanes * bytes_of_segment <= share;
   const auto unit = static_cast<Index>(lanes_fit ? lanes : std::min(fitting, lanes));
-  const Index needed = (segments + unit - 1) / unit;
+  // Fewer units than queues would leave cores idle while the eigensolver works on them.
+  const Index needed = std::max((segments + unit - 1) / unit, std::min<Index>(segments, queues));
   const Index units = std::min(segments, round_up(needed, std::min<Index>(needed, queues)));
   const double most = std::max(1.0, std::floor(fitting / static_cast<double>(unit)));
   const auto batches = static_cast<Index>(std::ceil(static_cast<double>(units) / most));
