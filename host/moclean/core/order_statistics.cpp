@@ -13,19 +13,17 @@ namespace moclean {
 
 namespace {
 
-constexpr std::size_t sample_size = 512;
-
-// Two values that most likely have the order statistic `place` of many values between them, a
-// tenth of the others, too: order statistics of a sample, three deviations to either side.
+// Two values that most likely have the order statistic `place` of many values between them:
+// order statistics of a sample, three deviations sqrt(size / 4) to either side. So have they an
+// eighth of all values with a sample of 512, a third with one of 64.
+template <std::size_t size, std::size_t margin>
 std::pair<double, double> bracket(std::span<const double> values, std::size_t place) {
-  std::array<double, sample_size> sample{};
-  const std::size_t step = values.size() / sample_size;
-  for (std::size_t i = 0; i < sample_size; ++i) sample[i] = values[i * step];
+  std::array<double, size> sample{};
+  const std::size_t step = values.size() / size;
+  for (std::size_t i = 0; i < size; ++i) sample[i] = values[i * step];
   std::ranges::sort(sample);
-  constexpr std::size_t margin = 34;  // 3 sqrt(512 / 4)
-  const std::size_t middle = place * sample_size / values.size();
-  return {sample[middle - std::min(middle, margin)],
-          sample[std::min(middle + margin, sample_size - 1)]};
+  const std::size_t middle = place * size / values.size();
+  return {sample[middle - std::min(middle, margin)], sample[std::min(middle + margin, size - 1)]};
 }
 
 // The order statistics `place` and `place` + 1 (the former again if it is the last). Reorders.
@@ -39,7 +37,9 @@ std::pair<double, double> neighbours(std::span<double> values, std::size_t place
 // The same of many values, in one pass over them without branches; empty if the bracket is wrong.
 std::optional<std::pair<double, double>> neighbours_of_many(std::span<const double> values,
                                                             std::size_t place) {
-  const auto [low, high] = bracket(values, place);
+  constexpr std::size_t very_many = 4096;
+  const auto [low, high] =
+      values.size() < very_many ? bracket<64, 12>(values, place) : bracket<512, 34>(values, place);
   std::vector<double> between(values.size());
   std::size_t below = 0, count = 0;
   for (const double x : values) {
@@ -54,7 +54,7 @@ std::optional<std::pair<double, double>> neighbours_of_many(std::span<const doub
 }  // namespace
 
 double quantile(std::span<double> values, double q) {
-  constexpr std::size_t many = 4 * sample_size;
+  constexpr std::size_t many = 512;
   const double exact = q * static_cast<double>(values.size() - 1);
   const auto place = static_cast<std::size_t>(exact);
   std::optional<std::pair<double, double>> found;

@@ -192,13 +192,16 @@ void MatrixNormalWindow::build_on_lengths(const ConstMatrixRef& motion) {
   Mask free(frames_, joints);
   for (Index j = 0; j < joints; ++j)
     free.col(j) = lost.middleCols(j * width, width).rowwise().any();
+  const Mask open = observed_.array() <= 0 && h.array() > length_reach;
+  for (Index i = 0; i < frames_; ++i)
+    if (!open.row(i).any()) free.row(i).setConstant(false);  // a frame that asks for nothing
   Matrix drawn = lost.select(motion.topRows(frames_), data_.topRows(frames_));
   const Mask moved = put_on_lengths(known_.links, free, drawn);
   target_ = data_;
   target_changed_ = true;
   for (Index i = 0; i < frames_; ++i)
     for (Index j = 0; j < columns(); ++j) {
-      if (observed_(i, j) > 0 || h(i, j) <= length_reach || !moved(i, j / width)) continue;
+      if (!open(i, j) || !moved(i, j / width)) continue;
       target_(i, j) = drawn(i, j);
       solve_weights_(i, j) =
           length_weight / (square(sigma_) + open_variance(h(i, j)) * predictive_(j));

@@ -39,8 +39,9 @@ struct BatchPlan {
 ///
 /// As far as these permit, batches fill the lanes of the eigensolver, all in flight take at most
 /// three quarters of the cache, and the queues get equal shares. Where one set of lanes per queue
-/// does not fit the cache, or would leave a queue without work, batches have fewer segments. Fewer queues are used where a queue's share
-/// of the memory would not hold the largest segment, or where there are not enough batches.
+/// does not fit the cache, or would leave a queue without work, batches have fewer segments. Fewer
+/// queues are used where a queue's share of the memory would not hold the largest segment, or where
+/// there are not enough batches.
 ///
 /// Each segment has to be within memory and allocation by itself.
 BatchPlan plan_batches(const std::vector<SegmentSize>& sizes, const BatchBounds& bounds);
