@@ -15,30 +15,45 @@ constexpr double trend_seconds = 0.075, speed_seconds = 0.125, local_seconds = 0
 constexpr double noise_share = 8, speed_share = 0.5, size_share = 0.1;
 constexpr double match = 0.35, shortest_seconds = 0.05, longest_seconds = 2;
 
-// One joint's way: what the running median of its velocity leaves, and how fast it goes.
+using Velocities = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+
+// The way of a joint where it is trusted, interpolated elsewhere: velocities, [frames - 1 x 3].
+Velocities velocities_of(const BodyTake& take, const Mask& trusted, Index joint) {
+  Velocities v(take.frames() - 1, 3);
+  std::vector<double> channel(static_cast<std::size_t>(take.frames()));
+  Eigen::Map<Eigen::VectorXd> values(channel.data(), take.frames());
+  for (Index c = 0; c < 3; ++c) {
+    values = take.positions.col(3 * joint + c);
+    fill_linearly(channel, trusted.col(joint));
+    v.col(c) = values.tail(v.rows()) - values.head(v.rows());
+  }
+  return v;
+}
+
+// Whether no step can be as long as a jump: neither a velocity nor a median of velocities is longer
+// than the largest of every coordinate together.
+bool is_slow(const Velocities& v, double size) {
+  return 2 * v.cwiseAbs().colwise().maxCoeff().norm() < size_share * size;
+}
+
+// What the running median of the velocity leaves, and how fast the joint goes.
 struct Steps {
-  Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor> rest;
+  Velocities rest;
   std::vector<double> length, speed;  // |rest|, |trend|
 };
 
-Steps steps_of(const BodyTake& take, const Mask& trusted, Index joint) {
-  const Index count = take.frames() - 1;
-  Steps steps;
-  steps.rest.resize(count, 3);
-  auto trend = steps.rest;
-  std::vector<double> channel(static_cast<std::size_t>(take.frames()));
+Steps steps_of(const Velocities& v, double frame_rate) {
+  Steps steps{.rest = v, .length = {}, .speed = {}};
+  Velocities trend = v;
+  std::vector<double> channel(static_cast<std::size_t>(v.rows()));
   for (Index c = 0; c < 3; ++c) {
-    Eigen::Map<Eigen::VectorXd> values(channel.data(), take.frames());
-    values = take.positions.col(3 * joint + c);
-    fill_linearly(channel, trusted.col(joint));
-    std::vector<double> velocity(static_cast<std::size_t>(count));
-    for (std::size_t i = 0; i < velocity.size(); ++i) velocity[i] = channel[i + 1] - channel[i];
-    steps.rest.col(c) = Eigen::Map<Eigen::VectorXd>(velocity.data(), count);
-    running_median(velocity, odd_frames(trend_seconds, take.frame_rate));
-    trend.col(c) = Eigen::Map<Eigen::VectorXd>(velocity.data(), count);
+    Eigen::Map<Eigen::VectorXd> values(channel.data(), v.rows());
+    values = v.col(c);
+    running_median(channel, odd_frames(trend_seconds, frame_rate));
+    trend.col(c) = values;
   }
   steps.rest -= trend;
-  for (Index i = 0; i < count; ++i) {
+  for (Index i = 0; i < v.rows(); ++i) {
     steps.length.push_back(steps.rest.row(i).norm());
     steps.speed.push_back(trend.row(i).norm());
   }
@@ -99,7 +114,9 @@ Mask jump_flags(const BodyTake& take, const Mask& trusted, const RigidBody& body
   Mask flags = Mask::Constant(take.frames(), take.joints(), false);
   if (take.frames() < 3) return flags;
   for (Index j = 0; j < take.joints(); ++j) {
-    const Steps steps = steps_of(take, trusted, j);
+    const Velocities v = velocities_of(take, trusted, j);
+    if (is_slow(v, size)) continue;
+    const Steps steps = steps_of(v, take.frame_rate);
     const auto jumps = jumps_of(steps, hot_steps(steps, take.frame_rate, size));
     for (std::size_t k = 0; k < jumps.size(); ++k)
       if (const auto back = way_back(jumps, k, take.frame_rate)) {
