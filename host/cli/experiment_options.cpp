@@ -26,19 +26,10 @@ void add_table_options(CLI::App& command, TableOptions& options) {
       ->check(CLI::PositiveNumber)
       ->default_val(5)
       ->type_name("N");
-  command
-      .add_option_function<std::string>(
-          "--frames", [&](const std::string& text) { options.frames = parse_frame_range(text); },
-          "Use frames A up to B - 1 of every take; default: the paper's of its own takes, all of "
-          "others")
-      ->type_name("A:B");
-  command.add_option("--rate", options.rate, "Frame rate of files that state none")
-      ->type_name("HZ")
-      ->check(CLI::PositiveNumber);
-  command
-      .add_option("--skeleton", options.skeleton,
-                  "Skeleton of .amc files; otherwise the .asf beside them that fits their name")
-      ->type_name("FILE.asf");
+  add_frames_option(command, options.frames,
+                    "Use frames A up to B - 1 of every take; default: the paper's of its own "
+                    "takes, all of others");
+  add_file_options(command, options.rate, options.skeleton);
   add_common(command, options);
 }
 
@@ -53,11 +44,7 @@ void add_grid_options(CLI::App& command, GridOptions& options) {
   command.add_option("--seeds", options.seeds, "Seeds 1 to N instead of those of the grid file")
       ->check(CLI::PositiveNumber)
       ->type_name("N");
-  command
-      .add_option_function<std::string>(
-          "--frames", [&](const std::string& text) { options.frames = parse_frame_range(text); },
-          "Use frames A up to B - 1 of takes that state none")
-      ->type_name("A:B");
+  add_frames_option(command, options.frames, "Use frames A up to B - 1 of takes that state none");
   add_common(command, options);
 }
 

@@ -75,19 +75,27 @@ FrameRange parse_frame_range(const std::string& text) {
   return range;
 }
 
-void add_input_options(CLI::App& command, InputOptions& options) {
+void add_frames_option(CLI::App& command, FrameRange& frames, const std::string& help) {
   command
       .add_option_function<std::string>(
-          "--frames", [&](const std::string& text) { options.frames = parse_frame_range(text); },
-          "Use frames A up to B - 1 only, counted from 0; A or B may be left out")
+          "--frames", [&](const std::string& text) { frames = parse_frame_range(text); }, help)
       ->type_name("A:B");
-  command.add_option("--rate", options.rate, "Frame rate of files that state none")
+}
+
+void add_file_options(CLI::App& command, double& rate, fs::path& skeleton) {
+  command.add_option("--rate", rate, "Frame rate of files that state none")
       ->type_name("HZ")
       ->check(CLI::PositiveNumber);
   command
-      .add_option("--skeleton", options.skeleton,
+      .add_option("--skeleton", skeleton,
                   "Skeleton of .amc files; otherwise the .asf beside them that fits their name")
       ->type_name("FILE.asf");
+}
+
+void add_input_options(CLI::App& command, InputOptions& options) {
+  add_frames_option(command, options.frames,
+                    "Use frames A up to B - 1 only, counted from 0; A or B may be left out");
+  add_file_options(command, options.rate, options.skeleton);
 }
 
 Clip select_frames(const Clip& clip, const FrameRange& frames, const fs::path& file) {

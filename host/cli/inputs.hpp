@@ -27,6 +27,12 @@ struct InputOptions {
   std::filesystem::path skeleton;
 };
 
+/// --frames, with the help text of a command.
+void add_frames_option(CLI::App& command, FrameRange& frames, const std::string& help);
+
+/// --rate and --skeleton: what files do not say themselves.
+void add_file_options(CLI::App& command, double& rate, std::filesystem::path& skeleton);
+
 void add_input_options(CLI::App& command, InputOptions& options);
 
 /// The frames of a clip that were asked for. Throws ArgumentError naming `file` if the clip has
