@@ -83,6 +83,29 @@ TEST(Automatic, FillsGapsAndZeros) {
   EXPECT_LE(rms(result.clip, truth), 0.02);
 }
 
+TEST(Automatic, NeighboursCarryAMarkerThroughALongGap) {
+  // Markers on one solid that turns, each sliding a little: no distance is exact.
+  constexpr Index frames = 400;
+  Clip truth = limbs(frames);
+  for (Index i = 0; i < frames; ++i)
+    for (Index j = 0; j < 8; ++j) {
+      const double t = static_cast<double>(i) / 120, k = static_cast<double>(j);
+      const double turn = 1.5 * std::sin(2 * t) + 0.4 * std::sin(5 * t),
+                   slide = 0.03 * std::sin(t + k);
+      const double x = 3 * std::cos(2 * k) + slide, y = 3 * std::sin(3 * k);
+      truth.samples.row(i).segment<3>(3 * j) << x * std::cos(turn) - y * std::sin(turn) + t,
+          x * std::sin(turn) + y * std::cos(turn), 2 * std::cos(5 * k) - slide;
+    }
+  Clip gappy = truth;
+  gappy.samples.middleRows(150, 90).middleCols(6, 3).setConstant(nan);
+
+  const Denoised result = cleaned(gappy), blind = cleaned(gappy, {.body = BodyRules::off});
+
+  const auto gap_of = [](const Clip& clip) { return clip.samples.block(150, 6, 90, 3); };
+  EXPECT_LE((gap_of(result.clip) - gap_of(truth)).norm(), 3 * gap_of(*result.sigma).norm());
+  EXPECT_LE(gap_of(*result.sigma).norm(), 0.5 * gap_of(*blind.sigma).norm());
+}
+
 TEST(Automatic, LeavesNoJointMissingThatWasSeen) {
   // Out of place in all of the second window, frames 95 to 205: flags would leave nothing of it.
   Clip noisy = limbs(400);

@@ -43,13 +43,17 @@ SegmentBatch batch_of(const std::vector<Index>& lengths, Index columns) {
   return test::batch_of(segments);
 }
 
-// Links that hold nowhere in particular, and doubtful vouching: all branches, no sense.
+// Links that hold nowhere in particular, doubtful vouching, gaps drawn to one place: all branches,
+// no sense.
 MatrixNormal with_knowledge(const SegmentBatch& data) {
   MatrixNormal method;
   for (Index b = 0; b < data.segments(); ++b) {
     const Index joints = data.columns() / 3;
     JointKnowledge known{.size = 10, .vouched = Mask::Constant(data.rows(b), joints, true)};
     for (Index j = 1; j < joints; ++j) known.links.push_back({j - 1, j, 5, true, j % 2 == 0});
+    known.drawn = Matrix::Constant(data.rows(b), data.columns(), 2);
+    known.variance = Matrix::Constant(data.rows(b), joints, 0.5);
+    known.variance.topRows(data.rows(b) / 2).setConstant(std::numeric_limits<double>::infinity());
     method.knowledge.push_back(known);
   }
   return method;

@@ -164,6 +164,26 @@ TEST(MatrixNormal, FillsGaps) {
   EXPECT_GE(result.deviation.block(110, 3, 10, 3).minCoeff(), result.deviation(50, 3));
 }
 
+TEST(MatrixNormal, DrawsMissingSamplesToWhereTheyShouldBe) {
+  const Matrix motion = walk(300, 12);
+  Matrix data = motion;
+  data.block(100, 3, 90, 3).setConstant(nan);
+  Matrix variance = Matrix::Constant(300, 4, std::numeric_limits<double>::infinity());
+  variance.col(1).segment(100, 90).setConstant(1e-6);
+  MatrixNormal method;
+  method.knowledge = {{.size = 10, .drawn = motion, .variance = variance}};
+
+  const auto blind = reference::solve(data, MatrixNormal{}), drawn = reference::solve(data, method);
+
+  const auto off = [&](const auto& result) {
+    return rms((result.low_rank - motion).block(100, 3, 90, 3));
+  };
+  EXPECT_LE(off(drawn), 0.3 * off(blind));
+  EXPECT_LE(drawn.deviation.block(100, 3, 90, 3).maxCoeff(), 1.001e-3);
+  EXPECT_GT(blind.deviation(145, 3), 0.01);
+  EXPECT_TRUE((drawn.trusted.block(100, 3, 90, 3).array() == 0).all());
+}
+
 TEST(MatrixNormal, ScalesWithItsData) {
   const Matrix data = spoilt(walk(150, 9), 4);
   const Matrix expected = reference::solve(data, MatrixNormal{}).low_rank;

@@ -15,8 +15,6 @@ constexpr double deviations_of_third = 0.4307;
 constexpr Index enough_frames = 400, fewest_joints = 4;
 constexpr double cut = 5, broken = 0.4;            // deviations; share of frames off the centre
 constexpr double hard_edge = 3, exact_edge = 0.3;  // spread, in units of the smallest
-constexpr double soft_edge = 7e-3;                 // spread, of the size
-constexpr double tail = 0.95, deviations_of_tail = 1.96;
 
 struct Pair {
   RigidEdge edge;
@@ -48,13 +46,6 @@ Pair look_at(const BodyTake& take, Index first, Index second, double smallest) {
   pair.edge.hard = pair.steady && core.spread < hard_edge * smallest;
   pair.edge.exact = exact;
   return pair;
-}
-
-// The spread of a pair's distances by their largest deviations.
-double tail_spread(const BodyTake& take, const RigidEdge& edge) {
-  std::vector<double> values = distances(take, edge.first, edge.second);
-  for (double& d : values) d = std::abs(d - edge.length);
-  return quantile(values, tail) / deviations_of_tail;
 }
 
 // Per joint the spread of its sixth steadiest pair.
@@ -89,7 +80,7 @@ Core steady_core(std::vector<double>& values) {
   return {(low + high) / 2, (high - low) / 2 / deviations_of_third};
 }
 
-RigidBody learn_rigid_body(const BodyTake& take, double size, double smallest) {
+RigidBody learn_rigid_body(const BodyTake& take, double smallest) {
   RigidBody body;
   body.judged.assign(static_cast<std::size_t>(take.joints()), false);
   if (take.joints() < fewest_joints) return body;
@@ -107,13 +98,10 @@ RigidBody learn_rigid_body(const BodyTake& take, double size, double smallest) {
     if (pair.edge.hard)
       for (const Index j : {pair.edge.first, pair.edge.second})
         body.judged[static_cast<std::size_t>(j)] = true;
-  const bool rigid = std::ranges::any_of(pairs, [](const Pair& p) { return p.edge.hard; });
   const auto judged = [&](Index j) { return body.judged[static_cast<std::size_t>(j)]; };
   for (const Pair& pair : pairs) {
-    const auto& [first, second, length, spread, hard, exact] = pair.edge;
-    if (rigid && pair.steady && (judged(first) || judged(second))) body.edges.push_back(pair.edge);
-    if (!rigid && tail_spread(take, pair.edge) < soft_edge * size)
-      body.edges.push_back({first, second, length, spread, false, true});
+    if (pair.steady && (judged(pair.edge.first) || judged(pair.edge.second)))
+      body.edges.push_back(pair.edge);
   }
   return body;
 }

@@ -36,10 +36,7 @@ struct Core {
 Core steady_core(std::vector<double>& values);
 
 /// Learns the body. `smallest` is the spread that measurement noise gives a constant distance, in
-/// the unit of the take, `size` is body_size(take). Soft marker sets have no hard edges; their
-/// steadiest distances, within 0.7 % of the size (3 mm of a person) for 95 % of the frames, count
-/// as exact instead: good enough to steer long gaps, not to judge. Every frame of a short take is
-/// looked at, 400 to 800 of a longer one.
-RigidBody learn_rigid_body(const BodyTake& take, double size, double smallest);
+/// the unit of the take. Every frame of a short take is looked at, 400 to 800 of a longer one.
+RigidBody learn_rigid_body(const BodyTake& take, double smallest);
 
 }  // namespace moclean

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "moclean/body/carried.hpp"
 #include "moclean/body/jump_flags.hpp"
 #include "moclean/body/rigid_flags.hpp"
 #include "moclean/body/vanished.hpp"
@@ -24,6 +25,8 @@ constexpr double usual_rate = 120;                             // Hz, where none
 constexpr double median_seconds = 0.058, lag_seconds = 0.067;  // of the first guess
 constexpr double edge_floor = 1e-4;        // least spread of a distance, share of the body's size
 constexpr double noise_of_distance = 1.4;  // of two samples, about sqrt 2
+constexpr double carried_seconds = 0.067;  // shortest gap through which joints are carried
+constexpr double soft_floor = 2e-3;        // deviation of distances that is steady, share of size
 constexpr Index shortest_window = 8;
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
@@ -66,13 +69,13 @@ void spare_hopeless(const Mask& seen, const Spans& spans, Mask& bad) {
 void look_at_body(double frame_rate, Prepared& prepared) {
   const BodyTake first = body_take(prepared.samples, frame_rate);
   drop(vanished(first), prepared.samples);
-  const BodyTake take = body_take(prepared.samples, frame_rate);
+  BodyTake take = body_take(prepared.samples, frame_rate);
   JointKnowledge& known = prepared.knowledge;
   known.size = body_size(take);
   if (known.size <= 0) return;
   const double smallest =
       std::max(noise_of_distance * dense_noise_level(prepared.samples), edge_floor * known.size);
-  const RigidBody body = learn_rigid_body(take, known.size, smallest);
+  const RigidBody body = learn_rigid_body(take, smallest);
   for (const RigidEdge& edge : body.edges)
     if (edge.hard || edge.exact)
       known.links.push_back({edge.first, edge.second, edge.length, edge.hard, edge.exact});
@@ -84,6 +87,11 @@ void look_at_body(double frame_rate, Prepared& prepared) {
   spare_hopeless(take.seen, prepared.spans, flags.bad);
   drop(flags.bad, prepared.samples);
   known.vouched = flags.vouched && !flags.bad;
+  take.seen = take.seen && !flags.bad;
+  Carried carried = carry(take, std::max(smallest, soft_floor * known.size),
+                          odd_frames(carried_seconds, frame_rate));
+  known.drawn = std::move(carried.positions);
+  known.variance = std::move(carried.variance);
 }
 
 Prepared prepare(const Clip& take, const Automatic& method) {
@@ -96,6 +104,10 @@ Prepared prepare(const Clip& take, const Automatic& method) {
 JointKnowledge cut(const JointKnowledge& known, const Span& span) {
   JointKnowledge part{.size = known.size, .links = known.links};
   if (known.vouched.size() > 0) part.vouched = known.vouched.middleRows(span.first, span.frames());
+  if (known.drawn.size() > 0) {
+    part.drawn = known.drawn.middleRows(span.first, span.frames());
+    part.variance = known.variance.middleRows(span.first, span.frames());
+  }
   return part;
 }
 

@@ -22,7 +22,8 @@ void require_count(const char* name, Index value) {
 
 bool JointKnowledge::operator==(const JointKnowledge& other) const {
   return size == other.size && links == other.links && vouched.rows() == other.vouched.rows() &&
-         vouched.cols() == other.vouched.cols() && (vouched == other.vouched).all();
+         vouched.cols() == other.vouched.cols() && (vouched == other.vouched).all() &&
+         drawn == other.drawn && variance == other.variance;
 }
 
 void check(const MatrixNormal& method) {

@@ -23,6 +23,8 @@ struct JointKnowledge {
   double size = 0;    ///< unit of the floors of noise, a body's size; above 0
   Mask vouched = {};  ///< [frames x joints]: samples the links say are right; or empty
   std::vector<DistanceLink> links = {};
+  Matrix drawn = {};     ///< [frames x columns]: where missing samples should be; or empty
+  Matrix variance = {};  ///< [frames x joints], of a column of that; infinite: not known
 
   bool operator==(const JointKnowledge& other) const;
 };

@@ -22,6 +22,7 @@ constexpr double soft_floor_share = 0.1;       // of the soft ones, of that
 constexpr double dense_noise = 10. / 6;        // sigma^2 over mean e from which smoothing is undone
 constexpr double most_stiffness = 1e3;
 constexpr double clip_deviations = 5, near_deviations = 3;
+constexpr double drawn_weight = 0.03;  // of drawn samples: the errors in a gap are one slow curve
 constexpr double length_weight = 0.1, length_reach = 4;  // of drawn joints; frames
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
@@ -51,6 +52,9 @@ MatrixNormalWindow::MatrixNormalWindow(const ConstMatrixRef& data, const MatrixN
   noise_floor_ = noise_floor_share * size;
   sigma_ = std::max(dense_noise_level(data), soft_floor_share * noise_floor_);
   weights_ = observed_;
+  for (Index j = 0; j < columns(); ++j)
+    for (Index i = 0; i < frames_; ++i)
+      if (is_drawn(i, j)) data_(i, j) = known_.drawn(i, j);
   target_ = data_;
 }
 
@@ -142,6 +146,27 @@ void MatrixNormalWindow::weigh(const ConstMatrixRef& motion,
     weigh_hard(energy, motion);
   else
     weigh_softly(energy);
+  draw();
+}
+
+// Whether a missing sample is known about.
+bool MatrixNormalWindow::is_drawn(Index i, Index j) const {
+  return known_.drawn.size() > 0 && observed_(i, j) == 0 &&
+         std::isfinite(known_.variance(i, j / method_.joint_columns));
+}
+
+// Draws S to where missing samples should be.
+void MatrixNormalWindow::draw() {
+  if (known_.drawn.size() == 0) return;
+  for (Index j = 0; j < columns(); ++j)
+    for (Index i = 0; i < frames_; ++i) {
+      if (!is_drawn(i, j)) continue;
+      const double variance = square(sigma_) + known_.variance(i, j / method_.joint_columns);
+      const double weight = drawn_weight / variance;
+      double& all = solve_weights_(i, j);
+      target_(i, j) = (all * target_(i, j) + weight * data_(i, j)) / (all + weight);
+      all += weight;
+    }
 }
 
 // Geman-McClure weights.
@@ -251,11 +276,12 @@ void MatrixNormalWindow::leave_unobserved(Matrix& result) const {
     if (observed_.col(j).sum() == 0) result.col(j).setConstant(missing);
 }
 
-// Column j of D, its gaps filled linearly.
+// Column j of D, gaps where nothing is drawn filled linearly.
 std::vector<double> MatrixNormalWindow::filled(Index j) const {
   std::vector<double> channel(static_cast<std::size_t>(frames_));
   Eigen::Map<Eigen::VectorXd>(channel.data(), frames_) = data_.col(j).head(frames_);
-  const Eigen::Array<bool, Eigen::Dynamic, 1> seen = observed_.col(j).array() > 0;
+  Eigen::Array<bool, Eigen::Dynamic, 1> seen = observed_.col(j).array() > 0;
+  for (Index i = 0; i < frames_; ++i) seen(i) = seen(i) || is_drawn(i, j);
   fill_linearly(channel, seen);
   return channel;
 }
@@ -282,7 +308,11 @@ Matrix MatrixNormalWindow::deviation() const {
   Matrix result = reach(weights_);
   for (Index j = 0; j < columns(); ++j)
     for (Index i = 0; i < frames_; ++i) {
-      const double open = open_variance(result(i, j)) * predictive_(j);
+      double open = open_variance(result(i, j)) * predictive_(j);
+      if (is_drawn(i, j)) {
+        const double variance = known_.variance(i, j / method_.joint_columns);
+        open *= variance / (open + variance + std::numeric_limits<double>::min());
+      }
       const double noise = square(sigma_);
       result(i, j) = std::sqrt(weights_(i, j) > 0 ? open * noise / (open + noise) : open);
     }

@@ -88,13 +88,15 @@ class MatrixNormalWindow {
   void weigh_softly(const Matrix& energy);
   void weigh_hard(const Matrix& energy, const ConstMatrixRef& motion);
   void reinstate(Mask& good) const;
+  bool is_drawn(Index i, Index j) const;
+  void draw();
   void build_on_lengths(const ConstMatrixRef& motion);
   std::vector<double> residuals(const ConstMatrixRef& motion) const;
 
   MatrixNormal method_;
   JointKnowledge known_;
   Index frames_;
-  Matrix data_, observed_;
+  Matrix data_, observed_;  // D also holds what is drawn
   double noise_floor_;
   double sigma_;
   int step_ = 0;
