@@ -233,7 +233,7 @@ std::vector<Denoised> AutomaticDenoiser::denoise(std::span<const Clip> takes,
   std::vector<Denoised> results(takes.size());
   for (Group& group : group_alike(takes)) {
     const SegmentBatch data = stack(prepared, group);
-    const Solution solution = backend_.solve(data, group.method, part);
+    const Solution solution = backend_.solve(data, std::move(group.method), part);
     all.finished += data.segments();
     Index segment = 0;
     for (const std::size_t t : group.takes) {

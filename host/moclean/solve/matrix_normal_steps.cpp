@@ -28,6 +28,11 @@ constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 double square(double x) { return x * x; }
 
+const JointKnowledge& knowledge_of(const MatrixNormal& method, Index segment) {
+  static const JointKnowledge none;
+  return method.knowledge.empty() ? none : method.knowledge[static_cast<std::size_t>(segment)];
+}
+
 // Variance of what samples at the harmonic distance h predict, 1 / R_jj being 1: a second
 // difference between neighbours, a random walk of velocities over a gap.
 double open_variance(double h) { return std::max(h / 6, h * h * h / 24); }
@@ -40,29 +45,38 @@ double kept_power(double noise, double power) {
 
 MatrixNormalWindow::MatrixNormalWindow(const ConstMatrixRef& data, const MatrixNormal& method,
                                        Index segment)
-    : method_(method), frames_(data.rows()) {
-  if (!method.knowledge.empty()) known_ = method.knowledge[static_cast<std::size_t>(segment)];
-  method_.knowledge.clear();
+    : method_(&method), known_(&knowledge_of(method, segment)), frames_(data.rows()) {
   const Index rows = std::max(data.rows(), data.cols());
   const Mask seen = !data.array().isNaN();
   data_ = Matrix::Zero(rows, data.cols());
   data_.topRows(frames_) = seen.select(data, 0);
   observed_ = seen.cast<double>();
-  const double size = known_.size > 0 ? known_.size : column_scale(data);
+  const double size = known_->size > 0 ? known_->size : column_scale(data);
   noise_floor_ = noise_floor_share * size;
   sigma_ = std::max(dense_noise_level(data), soft_floor_share * noise_floor_);
   weights_ = observed_;
-  for (Index j = 0; j < columns(); ++j)
-    for (Index i = 0; i < frames_; ++i)
-      if (is_drawn(i, j)) data_(i, j) = known_.drawn(i, j);
+  find_drawn();
   target_ = data_;
+}
+
+void MatrixNormalWindow::find_drawn() {
+  present_ = observed_.array() > 0;
+  if (known_->drawn.size() == 0) return;
+  for (Index i = 0; i < frames_; ++i)
+    for (Index j = 0; j < columns(); ++j) {
+      const double variance = known_->variance(i, j / method_->joint_columns);
+      if (observed_(i, j) > 0 || !std::isfinite(variance)) continue;
+      drawn_.push_back({i, j, variance});
+      present_(i, j) = true;
+      data_(i, j) = known_->drawn(i, j);
+    }
 }
 
 // Second differences over a lag of h frames tell the acceleration under dense noise: their variance
 // is 6 sigma^2 + h^4 q. Without dense noise the stiffness is 1.
 MatrixNormalWindow::FirstGuess MatrixNormalWindow::first_guess() const {
   FirstGuess guess{data_, Eigen::VectorXd::Ones(columns())};
-  const Index h = std::min(method_.lag_frames, (frames_ - 1) / 2), count = frames_ - 2 * h;
+  const Index h = std::min(method_->lag_frames, (frames_ - 1) / 2), count = frames_ - 2 * h;
   std::vector<double> lags;
   for (Index j = 0; j < columns(); ++j) {
     std::vector<double> channel = filled(j);
@@ -73,7 +87,7 @@ MatrixNormalWindow::FirstGuess MatrixNormalWindow::first_guess() const {
     const double power = square(deviation_per_mad * median(lags)) - 6 * square(sigma_);
     const double q = std::max(power, 0.0) / std::pow(h, 4) + std::numeric_limits<double>::min();
     guess.stiffness(j) = std::clamp(square(sigma_) / q, 1.0, most_stiffness);
-    running_median(channel, method_.median_frames);
+    running_median(channel, method_->median_frames);
     guess.motion.col(j).head(frames_) = values;
     guess.motion.col(j).tail(rows() - frames_).setConstant(values(frames_ - 1));
   }
@@ -132,7 +146,7 @@ Matrix MatrixNormalWindow::energies(const ConstMatrixRef& motion) const {
       const double variance = square(sigma_) + energy(i, j) * predictive_(j) / 6;
       energy(i, j) = observed_(i, j) * square(data_(i, j) - motion(i, j)) / variance;
     }
-  raise_to_joint_median(energy, method_.joint_columns);
+  raise_to_joint_median(energy, method_->joint_columns);
   return energy;
 }
 
@@ -149,31 +163,23 @@ void MatrixNormalWindow::weigh(const ConstMatrixRef& motion,
   draw();
 }
 
-// Whether a missing sample is known about.
-bool MatrixNormalWindow::is_drawn(Index i, Index j) const {
-  return known_.drawn.size() > 0 && observed_(i, j) == 0 &&
-         std::isfinite(known_.variance(i, j / method_.joint_columns));
-}
-
 // Draws S to where missing samples should be.
 void MatrixNormalWindow::draw() {
-  if (known_.drawn.size() == 0) return;
-  for (Index j = 0; j < columns(); ++j)
-    for (Index i = 0; i < frames_; ++i) {
-      if (!is_drawn(i, j)) continue;
-      const double variance = square(sigma_) + known_.variance(i, j / method_.joint_columns);
-      const double weight = drawn_weight / variance;
-      double& all = solve_weights_(i, j);
-      target_(i, j) = (all * target_(i, j) + weight * data_(i, j)) / (all + weight);
-      all += weight;
-    }
+  for (const Drawn& sample : drawn_) {
+    const double weight = drawn_weight / (square(sigma_) + sample.variance);
+    double& all = solve_weights_(sample.row, sample.column);
+    double& target = target_(sample.row, sample.column);
+    target = (all * target + weight * data_(sample.row, sample.column)) / (all + weight);
+    all += weight;
+  }
 }
 
 // Geman-McClure weights.
 void MatrixNormalWindow::weigh_softly(const Matrix& energy) {
   const double place =
-      method_.soft_steps > 1 ? static_cast<double>(step_) / (method_.soft_steps - 1) : 1;
-  const double cut = method_.soft_first * std::pow(method_.soft_last / method_.soft_first, place);
+      method_->soft_steps > 1 ? static_cast<double>(step_) / (method_->soft_steps - 1) : 1;
+  const double cut =
+      method_->soft_first * std::pow(method_->soft_last / method_->soft_first, place);
   for (Index i = 0; i < frames_; ++i)
     for (Index j = 0; j < columns(); ++j) {
       weights_(i, j) = observed_(i, j) / square(1 + energy(i, j) / square(cut));
@@ -182,23 +188,23 @@ void MatrixNormalWindow::weigh_softly(const Matrix& energy) {
 }
 
 void MatrixNormalWindow::weigh_hard(const Matrix& energy, const ConstMatrixRef& motion) {
-  Mask good = energy.array() < square(method_.hard);
-  if (known_.vouched.size() > 0) reinstate(good);
+  Mask good = energy.array() < square(method_->hard);
+  if (known_->vouched.size() > 0) reinstate(good);
   weights_ = good.select(observed_, 0);
   solve_weights_.topRows(frames_) = weights_ / square(sigma_);
-  const bool exact = std::ranges::any_of(known_.links, [](const auto& l) { return l.exact; });
+  const bool exact = std::ranges::any_of(known_->links, [](const auto& l) { return l.exact; });
   if (exact) build_on_lengths(motion);
 }
 
 // A vouched joint that would be rejected together with two vouched joints linked to it is not.
 void MatrixNormalWindow::reinstate(Mask& good) const {
-  const Index joints = known_.vouched.cols(), width = method_.joint_columns;
+  const Index joints = known_->vouched.cols(), width = method_->joint_columns;
   Mask out(frames_, joints);
   for (Index j = 0; j < joints; ++j)
-    out.col(j) = known_.vouched.col(j) && !good.middleCols(j * width, width).rowwise().all();
+    out.col(j) = known_->vouched.col(j) && !good.middleCols(j * width, width).rowwise().all();
   Eigen::Array<int, Eigen::Dynamic, Eigen::Dynamic> linked =
       Eigen::Array<int, Eigen::Dynamic, Eigen::Dynamic>::Zero(frames_, joints);
-  for (const DistanceLink& link : known_.links) {
+  for (const DistanceLink& link : known_->links) {
     if (!link.hard) continue;
     linked.col(link.first) += out.col(link.second).cast<int>();
     linked.col(link.second) += out.col(link.first).cast<int>();
@@ -211,7 +217,7 @@ void MatrixNormalWindow::reinstate(Mask& good) const {
 // In gaps longer than a few frames, S put on the exact lengths is as good as a sample of the
 // variance that the gap leaves open.
 void MatrixNormalWindow::build_on_lengths(const ConstMatrixRef& motion) {
-  const Index width = method_.joint_columns, joints = columns() / width;
+  const Index width = method_->joint_columns, joints = columns() / width;
   const Matrix h = reach(weights_);
   const Mask lost = weights_.array() <= 0;
   Mask free(frames_, joints);
@@ -221,7 +227,7 @@ void MatrixNormalWindow::build_on_lengths(const ConstMatrixRef& motion) {
   for (Index i = 0; i < frames_; ++i)
     if (!open.row(i).any()) free.row(i).setConstant(false);  // a frame that asks for nothing
   Matrix drawn = lost.select(motion.topRows(frames_), data_.topRows(frames_));
-  const Mask moved = put_on_lengths(known_.links, free, drawn);
+  const Mask moved = put_on_lengths(known_->links, free, drawn);
   target_ = data_;
   target_changed_ = true;
   for (Index i = 0; i < frames_; ++i)
@@ -258,7 +264,7 @@ void MatrixNormalWindow::estimate_noise(const ConstMatrixRef& motion) {
     const double fitted = static_cast<double>(frames_) * weights_.mean() * kept / weights_.sum();
     const double free = std::sqrt(std::max(1 - fitted, 0.02));
     sigma_ = std::max(deviation_per_mad * median(residuals) / free, noise_floor_);
-  } else if (2 * step_ >= method_.soft_steps && residuals.size() > 100) {
+  } else if (2 * step_ >= method_->soft_steps && residuals.size() > 100) {
     sigma_ = std::max(deviation_per_mad * median(residuals), soft_floor_share * noise_floor_);
   }
   ++step_;
@@ -280,9 +286,7 @@ void MatrixNormalWindow::leave_unobserved(Matrix& result) const {
 std::vector<double> MatrixNormalWindow::filled(Index j) const {
   std::vector<double> channel(static_cast<std::size_t>(frames_));
   Eigen::Map<Eigen::VectorXd>(channel.data(), frames_) = data_.col(j).head(frames_);
-  Eigen::Array<bool, Eigen::Dynamic, 1> seen = observed_.col(j).array() > 0;
-  for (Index i = 0; i < frames_; ++i) seen(i) = seen(i) || is_drawn(i, j);
-  fill_linearly(channel, seen);
+  fill_linearly(channel, present_.col(j));
   return channel;
 }
 
@@ -308,14 +312,15 @@ Matrix MatrixNormalWindow::deviation() const {
   Matrix result = reach(weights_);
   for (Index j = 0; j < columns(); ++j)
     for (Index i = 0; i < frames_; ++i) {
-      double open = open_variance(result(i, j)) * predictive_(j);
-      if (is_drawn(i, j)) {
-        const double variance = known_.variance(i, j / method_.joint_columns);
-        open *= variance / (open + variance + std::numeric_limits<double>::min());
-      }
+      const double open = open_variance(result(i, j)) * predictive_(j);
       const double noise = square(sigma_);
       result(i, j) = std::sqrt(weights_(i, j) > 0 ? open * noise / (open + noise) : open);
     }
+  for (const Drawn& sample : drawn_) {
+    double& deviation = result(sample.row, sample.column);
+    const double open = square(deviation), all = open + sample.variance;
+    if (all > 0) deviation = std::sqrt(open * sample.variance / all);
+  }
   leave_unobserved(result);
   return result;
 }

@@ -21,17 +21,18 @@ namespace moclean {
 class MatrixNormalWindow {
  public:
   /// `data` is [frames x columns], NaN where missing; `segment` its place in method.knowledge.
+  /// `method` has to outlive the window.
   MatrixNormalWindow(const ConstMatrixRef& data, const MatrixNormal& method, Index segment = 0);
 
   Index frames() const { return frames_; }
   Index rows() const { return data_.rows(); }
   Index columns() const { return data_.cols(); }
-  int steps() const { return method_.soft_steps + method_.hard_steps; }
+  int steps() const { return method_->soft_steps + method_->hard_steps; }
 
   /// Nothing to learn accelerations from: fewer than five frames, or no sample at all.
   bool trivial() const { return frames_ < 5 || observed_.sum() == 0; }
 
-  /// What comes out of a trivial window: D, its gaps filled linearly.
+  /// What comes out of a trivial window: D, gaps where nothing is drawn filled linearly.
   Matrix filled() const;
 
   /// What S begins as: `motion` is the data's running medians, gaps filled linearly, smoothed with
@@ -79,7 +80,13 @@ class MatrixNormalWindow {
   Matrix deviation() const;
 
  private:
-  bool hard() const { return step_ >= method_.soft_steps; }
+  // A missing sample that is known about.
+  struct Drawn {
+    Index row, column;
+    double variance;
+  };
+
+  bool hard() const { return step_ >= method_->soft_steps; }
   double share_kept() const;
   double least_spectrum() const;
   std::vector<double> filled(Index j) const;
@@ -88,15 +95,17 @@ class MatrixNormalWindow {
   void weigh_softly(const Matrix& energy);
   void weigh_hard(const Matrix& energy, const ConstMatrixRef& motion);
   void reinstate(Mask& good) const;
-  bool is_drawn(Index i, Index j) const;
+  void find_drawn();
   void draw();
   void build_on_lengths(const ConstMatrixRef& motion);
   std::vector<double> residuals(const ConstMatrixRef& motion) const;
 
-  MatrixNormal method_;
-  JointKnowledge known_;
+  const MatrixNormal* method_;
+  const JointKnowledge* known_;
   Index frames_;
   Matrix data_, observed_;  // D also holds what is drawn
+  Mask present_;            // observed or drawn
+  std::vector<Drawn> drawn_;
   double noise_floor_;
   double sigma_;
   int step_ = 0;
