@@ -2,11 +2,11 @@
 // kernels/entry.cl, a work-group of WG work-items per block of rows: the form for GPUs. Beside
 // products_group.cl it does what sweep.cl does in one go.
 //
-//   start      Y = dual_scale D, A = 0
+//   start      Y = dual_scale D, A = 0; where D is missing Y = 0, A = D as it was filled
 //   form       order ae: X = D - E + Y/mu from T
 //              order ea: E = soft(D - A + Y/mu, lambda/mu), X = A + clamp(D - A + Y/mu, ..)
 //   shrink     order ae: T = mu (D - A) + Y        order ea: Y+ = mu (X - A)
-//              |D - A - E|_F^2 = |(Y+ - Y)/mu|^2
+//              |D - A - E|_F^2 = |(Y+ - Y)/mu|^2; where D is missing D = A, so that Y+ = 0
 //   finish     order ae: E = (T - clamp(T, -lambda, lambda)) / mu     order ea: as `form` left it
 //
 // Neighbouring work-items take neighbouring entries, across the rows of a block, which are one run
@@ -45,13 +45,16 @@ kernel __attribute__((reqd_work_group_size(WG, 1, 1))) void start(
     int block_count,                   // of active blocks
     global const state_t* states,      // [segments]
     global const real* data,           // D [rows x pitch] stacked
-    global real* t,                    // Y
-    global real* a) {                  // A, order ea only
+    int with_missing,
+    global const real* observed,  // 0 where D is missing, and filled; else 1
+    global real* t,               // Y
+    global real* a) {             // A, order ea only
   if ((int)get_group_id(0) >= block_count) return;
   const part_t part = part_of(segments, blocks, states);
   for (size_t i = part.first + get_local_id(0); i < part.last; i += WG) {
-    t[i] = data[i] * part.state->dual_scale;
-    if (part.state->order_ea) a[i] = 0;
+    const real seen = with_missing ? observed[i] : 1;
+    t[i] = seen * data[i] * part.state->dual_scale;
+    if (part.state->order_ea) a[i] = data[i] - seen * data[i];
   }
 }
 
@@ -60,14 +63,15 @@ kernel __attribute__((reqd_work_group_size(WG, 1, 1))) void form(
     global const block_t* blocks,      // [active blocks]
     int block_count,                   // of active blocks
     global const state_t* states,      // [segments]
-    global const real* data,           // D [rows x pitch] stacked
-    global const real* t,              // T, or Y
-    global const real* a,              // A, order ea only
-    global real* e,                    // E, order ea only
-    global real* x) {                  // X
+    int wide_only,
+    global const real* data,  // D [rows x pitch] stacked
+    global const real* t,     // T, or Y
+    global const real* a,     // A, order ea only
+    global real* e,           // E, order ea only
+    global real* x) {         // X
   if ((int)get_group_id(0) >= block_count) return;
   const part_t part = part_of(segments, blocks, states);
-  if (part.state->finished) return;
+  if (part.state->finished || (wide_only && !is_wide(part.segment))) return;
   const scalars_t k = scalars_of(part.state);
   for (size_t i = part.first + get_local_id(0); i < part.last; i += WG)
     if (part.state->order_ea) {
@@ -83,7 +87,9 @@ kernel __attribute__((reqd_work_group_size(WG, 1, 1))) void shrink(
     global const block_t* blocks,      // [active blocks]
     int block_count,                   // of active blocks
     global const state_t* states,      // [segments]
-    global const real* data,           // D [rows x pitch] stacked
+    global real* data,                 // D [rows x pitch] stacked
+    int with_missing,                  // D becomes A where it is missing
+    global const real* observed,       // 0 where D is missing, else 1
     global const real* x,              // X, order ea only
     global const real* a,              // A
     global real* t,                    // T -> T, or Y -> Y+
@@ -99,8 +105,12 @@ kernel __attribute__((reqd_work_group_size(WG, 1, 1))) void shrink(
   for (size_t base = part.first; base < part.last; base += WG) {
     const size_t i = base + lane;
     if (i >= part.last) continue;
+    const int missing = with_missing && observed[i] == 0;
+    const real known = a[i];
+    if (missing) data[i] = known;
+    const real wanted = missing ? known : part.state->order_ea ? x[i] : data[i];
     const real dual = part.state->order_ea ? t[i] : limited(t[i], k.lambda);
-    const real next = part.state->order_ea ? k.mu * (x[i] - a[i]) : fma(k.mu, data[i] - a[i], dual);
+    const real next = fma(k.mu, wanted - known, part.state->order_ea ? 0 : dual);
     const real dual_next = part.state->order_ea ? next : limited(next, k.lambda);
     const real rest = (dual_next - dual) * k.inverse_mu;
     sum += rest * rest;

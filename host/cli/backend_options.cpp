@@ -32,9 +32,9 @@ void add_arithmetic(CLI::App& command, BackendOptions& options) {
       .add_option_function<std::string>(
           "--products",
           [&](const std::string& text) { options.products = parse_product_path(text); },
-          "Matrix products on the OpenCL device: our kernels, or CLBlast; default: those of the "
-          "tuning, else own")
-      ->check(CLI::IsMember({"own", "clblast"}))
+          "Matrix products on the OpenCL device: our kernels for CPUs, CLBlast, or our kernels for "
+          "GPUs; default: those of the tuning, else group on GPUs and own elsewhere")
+      ->check(CLI::IsMember({"own", "clblast", "group"}))
       ->type_name("PATH")
       ->group(backend_group);
   command
@@ -86,8 +86,9 @@ void complete_backend(BackendOptions& options) {
   const bool mixed = options.precision == Precision::mixed;
   if (mixed && options.backend != "opencl")
     throw ArgumentError("--precision mixed needs --backend opencl; the reference is double");
-  if (mixed && options.products == ProductPath::clblast)
-    throw ArgumentError("--precision mixed works with our own products only, not with clblast");
+  if (mixed && options.products && *options.products != ProductPath::own)
+    throw ArgumentError("--precision mixed works with --products own only, not with " +
+                        to_string(*options.products));
   if (options.memory_limit == 0) options.memory_limit = physical_memory() / 4;
 }
 

@@ -52,13 +52,15 @@ int choice(const Json& record, const char* name) {
   return static_cast<int>(value);
 }
 
-// A file from before there were queues leaves them at their default.
+// A file from before there were queues, or products in work-groups, leaves them at their default.
 Tuning tuning_of(const Json& record, const DeviceInfo& device) {
   Tuning tuning{.tile_rows = choice(record, "tile_rows"),
                 .tile_vectors = choice(record, "tile_vectors"),
                 .sweep_rows = choice(record, "sweep_rows"),
                 .panel = choice(record, "panel"),
                 .products = parse_product_path(record.at("products").get<std::string>()),
+                .work_group = record.contains("work_group") ? choice(record, "work_group")
+                                                            : Tuning{}.work_group,
                 .eigen = parse_eigen_form(record.at("eigen").get<std::string>()),
                 .batch_segments = choice(record, "batch_segments"),
                 .queues = record.contains("queues") ? choice(record, "queues")
@@ -112,10 +114,15 @@ void write_tuning(const fs::path& file, const DeviceInfo& device, const Tuning& 
 }
 
 Json tuning_record(const Tuning& tuning) {
-  return {{"tile_rows", tuning.tile_rows},           {"tile_vectors", tuning.tile_vectors},
-          {"sweep_rows", tuning.sweep_rows},         {"panel", tuning.panel},
-          {"products", to_string(tuning.products)},  {"eigen", to_string(tuning.eigen)},
-          {"batch_segments", tuning.batch_segments}, {"queues", tuning.queues}};
+  return {{"tile_rows", tuning.tile_rows},
+          {"tile_vectors", tuning.tile_vectors},
+          {"sweep_rows", tuning.sweep_rows},
+          {"panel", tuning.panel},
+          {"products", to_string(tuning.products)},
+          {"work_group", tuning.work_group},
+          {"eigen", to_string(tuning.eigen)},
+          {"batch_segments", tuning.batch_segments},
+          {"queues", tuning.queues}};
 }
 
 }  // namespace moclean::cli

@@ -33,20 +33,13 @@ std::vector<Candidate> eigen_forms(const Tuning& settled, bool quick) {
 
 std::vector<Candidate> product_paths(const Tuning& settled, bool quick) {
   if (quick) return {};
-  Tuning other = settled;
-  other.products = ProductPath::clblast;
-  return {{"products clblast", other}};
-}
-
-std::vector<Candidate> tiles(const Tuning& settled, bool quick) {
   std::vector<Candidate> all;
-  for (const auto& [rows, vectors] : {std::pair(4, 3), {4, 4}, {6, 3}, {6, 4}, {8, 2}, {12, 2}}) {
+  for (const ProductPath path : {ProductPath::own, ProductPath::clblast, ProductPath::group}) {
+    if (path == settled.products) continue;
     Tuning other = settled;
-    other.tile_rows = rows;
-    other.tile_vectors = vectors;
-    all.push_back({fmt::format("tile {} x {}", rows, vectors), other});
+    other.products = path;
+    all.push_back({"products " + to_string(path), other});
   }
-  if (quick) all.resize(1);
   return all;
 }
 
@@ -61,7 +54,26 @@ std::vector<Candidate> variants(const Tuning& settled, const char* name,
   return all;
 }
 
+std::vector<Candidate> work_groups(const Tuning& settled, bool quick) {
+  if (settled.products != ProductPath::group || quick) return {};
+  return variants(settled, "work-groups of", {64, 128}, &Tuning::work_group);
+}
+
+std::vector<Candidate> tiles(const Tuning& settled, bool quick) {
+  if (settled.products != ProductPath::own) return {};
+  std::vector<Candidate> all;
+  for (const auto& [rows, vectors] : {std::pair(4, 3), {4, 4}, {6, 3}, {6, 4}, {8, 2}, {12, 2}}) {
+    Tuning other = settled;
+    other.tile_rows = rows;
+    other.tile_vectors = vectors;
+    all.push_back({fmt::format("tile {} x {}", rows, vectors), other});
+  }
+  if (quick) all.resize(1);
+  return all;
+}
+
 std::vector<Candidate> sweeps(const Tuning& settled, bool quick) {
+  if (settled.products != ProductPath::own) return {};
   return variants(settled, "sweep rows", quick ? std::vector{16} : std::vector{16, 24, 48, 64},
                   &Tuning::sweep_rows);
 }
@@ -94,7 +106,8 @@ std::vector<Candidate> queues(const Tuning& settled, bool quick) {
   return all;
 }
 
-constexpr Kind kinds[] = {eigen_forms, product_paths, tiles, sweeps, panels, queues, batches};
+constexpr Kind kinds[] = {eigen_forms, product_paths, work_groups, tiles,
+                          sweeps,      panels,        queues,      batches};
 
 bool equal_bits(const SegmentBatch& a, const SegmentBatch& b) {
   return std::ranges::equal(a.storage(), b.storage());

@@ -148,6 +148,7 @@ TEST_F(Tune, MixedPrecisionTakesALargerToleranceAsGiven) {
 TEST_F(Tune, OptionsThatDoNotGoTogetherAreUsageErrors) {
   const std::vector<std::string> wrong[] = {{"--precision", "mixed", "--backend", "reference"},
                                             {"--precision", "mixed", "--products", "clblast"},
+                                            {"--precision", "mixed", "--products", "group"},
                                             {"--precision", "mixed", "--tolerance", "1e-7"},
                                             {"--precision", "half"},
                                             {"--profile", "--backend", "reference"}};

@@ -27,6 +27,7 @@ const Tuning tuning{.tile_rows = 6,
                     .sweep_rows = 48,
                     .panel = 2,
                     .products = ProductPath::clblast,
+                    .work_group = 32,
                     .eigen = EigenForm::group,
                     .batch_segments = 64,
                     .queues = 3};
@@ -89,8 +90,9 @@ TEST_F(TuningCache, ChoiceOutOfItsRangeIsAProblem) {
       {"\"tile_rows\": 6", "\"tile_rows\": 1e30"},
       {"\"panel\": 2", "\"panels\": 2"},
       {"\"sweep_rows\": 48", "\"sweep_rows\": \"\""},
-      {"\"group\"", "\"grape\""},
+      {"\"eigen\": \"group\"", "\"eigen\": \"grape\""},
       {"\"clblast\"", "\"blas\""},
+      {"\"work_group\": 32", "\"work_group\": 8"},
       {": 64", ": 4294967297"},
       {"\"queues\": 3", "\"queues\": 0"},
       {"\"queues\": 3", "\"queues\": 65"}};
@@ -109,6 +111,13 @@ TEST_F(TuningCache, FileFromBeforeThereWereQueuesTakesTheirDefault) {
   Tuning expected = tuning;
   expected.queues = default_tuning(device).queues;
   EXPECT_EQ(cached.tuning, expected);
+}
+
+TEST_F(TuningCache, FileFromBeforeThereWereWorkGroupsTakesTheirDefault) {
+  const CachedTuning cached = read_changed("    \"work_group\": 32,\n", "");
+
+  ASSERT_TRUE(cached.tuning) << cached.problem;
+  EXPECT_EQ(cached.tuning->work_group, Tuning{}.work_group);
 }
 
 TEST_F(TuningCache, LiesInTheCacheDirectoryOfTheUser) {

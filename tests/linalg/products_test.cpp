@@ -163,12 +163,12 @@ std::string name_of(const testing::TestParamInfo<std::tuple<ProductPath, Shape>>
   return to_string(path) + "_" + std::to_string(shape.rows) + "x" + std::to_string(shape.columns);
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, ProductsTest,
-                         testing::Combine(testing::Values(ProductPath::own, ProductPath::clblast),
-                                          testing::Values(Shape{1, 1}, Shape{3, 5}, Shape{64, 64},
-                                                          Shape{200, 93}, Shape{61, 129},
-                                                          Shape{25, 93}, Shape{17, 1})),
-                         name_of);
+INSTANTIATE_TEST_SUITE_P(
+    Shapes, ProductsTest,
+    testing::Combine(testing::Values(ProductPath::own, ProductPath::clblast, ProductPath::group),
+                     testing::Values(Shape{1, 1}, Shape{3, 5}, Shape{64, 64}, Shape{200, 93},
+                                     Shape{61, 129}, Shape{25, 93}, Shape{17, 1})),
+    name_of);
 
 }  // namespace
 }  // namespace moclean

@@ -80,7 +80,7 @@ class GroupSweepTest : public testing::TestWithParam<std::tuple<int, bool>> {
 TEST_P(GroupSweepTest, StartScalesTheData) {
   const Buffer<double> d = upload(D_);
   Buffer<double> t = upload(T_), a = upload(A_);
-  launch("start", d, t, a);
+  launch("start", d, cl_int{0}, d, t, a);
 
   const SegmentBatch Y = download(t, D_), A = download(a, D_);
   for_each_entry([&](Index b, Index i, Index j) {
@@ -93,7 +93,7 @@ TEST_P(GroupSweepTest, StartScalesTheData) {
 TEST_P(GroupSweepTest, FormGivesWhatIsThresholded) {
   const Buffer<double> d = upload(D_), t = upload(T_), a = upload(A_);
   Buffer<double> e = upload(X_), x = upload(X_);
-  launch("form", d, t, a, e, x);
+  launch("form", cl_int{0}, d, t, a, e, x);
 
   const SegmentBatch E = download(e, D_), X = download(x, D_);
   for_each_entry([&](Index b, Index i, Index j) {
@@ -113,7 +113,7 @@ TEST_P(GroupSweepTest, ShrinkIsTheStepOfTheReference) {
   Buffer<std::int32_t> sparse(test::device(), batch_.block_count());
   std::vector<double> sums(batch_.block_count());
   std::vector<std::int32_t> flags(batch_.block_count());
-  launch("shrink", d, x, a, t, squares, sparse);
+  launch("shrink", d, cl_int{0}, d, x, a, t, squares, sparse);
   squares.read(sums);
   sparse.read(flags);
 
@@ -141,7 +141,7 @@ TEST_P(GroupSweepTest, ShrinkKeepsThePaddingZeroAndLeavesFinishedSegmentsAlone) 
   const Buffer<double> d = upload(D_), x = upload(X_), a = upload(A_);
   Buffer<double> t = upload(T_), squares(test::device(), batch_.block_count());
   Buffer<std::int32_t> sparse(test::device(), batch_.block_count());
-  launch("shrink", d, x, a, t, squares, sparse);
+  launch("shrink", d, cl_int{0}, d, x, a, t, squares, sparse);
 
   const SegmentBatch T = download(t, D_);
   EXPECT_TRUE(test::same_bits(Matrix(T.segment(0)), Matrix(T_.segment(0))));

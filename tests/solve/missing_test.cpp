@@ -156,7 +156,8 @@ std::string name_of(const testing::TestParamInfo<MissingAgreement::ParamType>& p
 
 INSTANTIATE_TEST_SUITE_P(
     Shapes, MissingAgreement,
-    testing::Combine(testing::Values(BackendKind::opencl_own, BackendKind::opencl_clblast),
+    testing::Combine(testing::Values(BackendKind::opencl_own, BackendKind::opencl_clblast,
+                                     BackendKind::opencl_group64),
                      testing::Values(UpdateOrder::ae, UpdateOrder::ea),
                      testing::Values(Shape{3, 5}, Shape{64, 64}, Shape{300, 21}, Shape{25, 93})),
     name_of);

@@ -56,29 +56,42 @@ std::string name_of(const testing::TestParamInfo<OpenClAgreement::ParamType>& pa
 
 INSTANTIATE_TEST_SUITE_P(
     Shapes, OpenClAgreement,
-    testing::Combine(testing::Values(BackendKind::opencl_own, BackendKind::opencl_clblast),
+    testing::Combine(testing::Values(BackendKind::opencl_own, BackendKind::opencl_clblast,
+                                     BackendKind::opencl_group128),
                      testing::Values(UpdateOrder::ae, UpdateOrder::ea),
                      testing::Values(Shape{1, 1}, Shape{3, 5}, Shape{64, 64}, Shape{200, 93},
                                      Shape{61, 129}, Shape{25, 93}, Shape{100, 1}, Shape{1, 93})),
     name_of);
 
-class OpenClEdgeCases : public testing::TestWithParam<UpdateOrder> {
+INSTANTIATE_TEST_SUITE_P(
+    WorkGroups, OpenClAgreement,
+    testing::Combine(testing::Values(BackendKind::opencl_group64, BackendKind::opencl_group256),
+                     testing::Values(UpdateOrder::ae, UpdateOrder::ea),
+                     testing::Values(Shape{3, 5}, Shape{25, 93}, Shape{70, 33})),
+    name_of);
+
+class OpenClEdgeCases : public testing::TestWithParam<std::tuple<BackendKind, UpdateOrder>> {
  protected:
-  RobustPca method_{.order = GetParam()};
+  void expect_agreement(const SegmentBatch& data) const {
+    moclean::expect_agreement(data, method_, kind_);
+  }
+
+  BackendKind kind_ = std::get<0>(GetParam());
+  RobustPca method_{.order = std::get<1>(GetParam())};
 };
 
 TEST_P(OpenClEdgeCases, ConstantColumns) {
   Matrix data = test::random_matrix(50, 12, 1);
   data.leftCols(6).setConstant(3.5);
 
-  expect_agreement(test::batch_of({data, Matrix::Constant(50, 12, -2)}), method_);
+  expect_agreement(test::batch_of({data, Matrix::Constant(50, 12, -2)}));
 }
 
 TEST_P(OpenClEdgeCases, OneFrameOrOneColumnWithTheDegenerateDefaultLambda) {
   for (const Matrix& data : {test::random_matrix(1, 93, 4), test::random_matrix(100, 1, 5)}) {
     const SegmentBatch batch = test::batch_of({data});
 
-    const Solution device = OpenClBackend(test::device()).solve(batch, method_);
+    const Solution device = test::make_backend(kind_)->solve(batch, method_);
     const Solution reference = ReferenceBackend(1).solve(batch, method_);
 
     EXPECT_EQ(device.segments[0].iterations, reference.segments[0].iterations);
@@ -92,25 +105,24 @@ TEST_P(OpenClEdgeCases, OneFrameOrOneColumnWithTheDegenerateDefaultLambda) {
 TEST_P(OpenClEdgeCases, RankOne) {
   const Matrix data = test::random_matrix(40, 1, 2) * test::random_matrix(1, 30, 3);
 
-  expect_agreement(test::batch_of({data}), method_);
+  expect_agreement(test::batch_of({data}));
 }
 
 // Whose residual falls to nothing in one iteration, so that none before it was taken for the last.
 TEST_P(OpenClEdgeCases, SegmentsThatConvergeAtOnceAmongOthers) {
   const Matrix rank_one = test::random_matrix(50, 1, 1) * test::random_matrix(1, 20, 2);
   const SegmentBatch planted = test::planted_batch({.columns = 20, .rank = 2}, {50});
-  expect_agreement(test::batch_of({rank_one, planted.segment(0), rank_one.topRows(10)}), method_);
+  expect_agreement(test::batch_of({rank_one, planted.segment(0), rank_one.topRows(10)}));
 }
 
 TEST_P(OpenClEdgeCases, TinyAndHugeValues) {
   const Matrix data = test::planted({.rows = 60, .columns = 20}).data();
 
-  expect_agreement(test::batch_of({1e-12 * data, 1e12 * data}), method_);
+  expect_agreement(test::batch_of({1e-12 * data, 1e12 * data}));
 }
 
 TEST_P(OpenClEdgeCases, AlreadyLowRankData) {
-  expect_agreement(test::planted_batch({.columns = 30, .rank = 4, .error_share = 0}, {80}),
-                   method_);
+  expect_agreement(test::planted_batch({.columns = 30, .rank = 4, .error_share = 0}, {80}));
 }
 
 TEST_P(OpenClEdgeCases, NoSurvivingSingularValue) {
@@ -119,28 +131,34 @@ TEST_P(OpenClEdgeCases, NoSurvivingSingularValue) {
   method_.max_iterations = 2;
   const SegmentBatch data = test::planted_batch({.columns = 20}, {40});
 
-  const Solution solution = OpenClBackend(test::device()).solve(data, method_);
+  const Solution solution = test::make_backend(kind_)->solve(data, method_);
 
   EXPECT_EQ(solution.segments[0].rank, 0);
   EXPECT_EQ(solution.low_rank.segment(0).norm(), 0);
-  expect_agreement(data, method_);
+  expect_agreement(data);
 }
 
 TEST_P(OpenClEdgeCases, OtherParameters) {
   const SegmentBatch data = test::planted_batch({.columns = 20}, {40, 70});
 
   method_.lambda = 0.2;
-  expect_agreement(data, method_);
+  expect_agreement(data);
   method_ = {.lambda_scale = 1.7,
              .rho = 1.2,
              .mu_max_factor = 1e5,
              .tolerance = 1e-5,
-             .order = GetParam()};
-  expect_agreement(data, method_);
+             .order = std::get<1>(GetParam())};
+  expect_agreement(data);
 }
 
-INSTANTIATE_TEST_SUITE_P(Orders, OpenClEdgeCases, testing::Values(UpdateOrder::ae, UpdateOrder::ea),
-                         [](const auto& parameter) { return to_string(parameter.param); });
+INSTANTIATE_TEST_SUITE_P(Orders, OpenClEdgeCases,
+                         testing::Combine(testing::Values(BackendKind::opencl_own,
+                                                          BackendKind::opencl_group128),
+                                          testing::Values(UpdateOrder::ae, UpdateOrder::ea)),
+                         [](const auto& parameter) {
+                           return to_string(std::get<0>(parameter.param)) + "_" +
+                                  to_string(std::get<1>(parameter.param));
+                         });
 
 TEST(OpenClBackend, CutsABatchThatExceedsTheMemoryLimitWithoutChangingABit) {
   const SegmentBatch data =

@@ -181,7 +181,8 @@ TEST_P(OtherMethodContract, ReportsEverySegmentAndStopsWhenAsked) {
 INSTANTIATE_TEST_SUITE_P(
     Backends, OtherMethodContract,
     testing::Combine(testing::Values(BackendKind::reference, BackendKind::reference_two_jobs,
-                                     BackendKind::opencl_own, BackendKind::opencl_clblast),
+                                     BackendKind::opencl_own, BackendKind::opencl_clblast,
+                                     BackendKind::opencl_group128),
                      testing::ValuesIn(every_kind)),
     [](const auto& parameter) {
       return to_string(std::get<0>(parameter.param)) + "_" +
@@ -231,6 +232,12 @@ INSTANTIATE_TEST_SUITE_P(
                      testing::ValuesIn(every_kind),
                      testing::Values(Shape{1, 1}, Shape{3, 5}, Shape{64, 64}, Shape{200, 93},
                                      Shape{61, 129}, Shape{25, 93}, Shape{300, 9}, Shape{1, 93})),
+    name_of);
+
+INSTANTIATE_TEST_SUITE_P(
+    WorkGroups, OtherMethodAgreement,
+    testing::Combine(testing::Values(BackendKind::opencl_group128), testing::ValuesIn(every_kind),
+                     testing::Values(Shape{3, 5}, Shape{25, 93}, Shape{300, 9})),
     name_of);
 
 TEST(OtherMethods, AgreeOnDataOfExactlyLowRank) {

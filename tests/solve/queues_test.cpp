@@ -65,13 +65,14 @@ TEST_P(QueuesTest, LeaveEveryBit) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Modes, QueuesTest,
-                         testing::Values(Case{.name = "ae"},
-                                         Case{.name = "ea", .order = UpdateOrder::ea},
-                                         Case{.name = "mixed", .precision = Precision::mixed},
-                                         Case{.name = "group", .eigen = EigenForm::group},
-                                         Case{.name = "clblast", .products = ProductPath::clblast}),
-                         [](const auto& parameter) { return parameter.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Modes, QueuesTest,
+    testing::Values(Case{.name = "ae"}, Case{.name = "ea", .order = UpdateOrder::ea},
+                    Case{.name = "mixed", .precision = Precision::mixed},
+                    Case{.name = "group", .eigen = EigenForm::group},
+                    Case{.name = "clblast", .products = ProductPath::clblast},
+                    Case{.name = "gpu", .eigen = EigenForm::group, .products = ProductPath::group}),
+    [](const auto& parameter) { return parameter.param.name; });
 
 // The limit is searched for: the least that does not throw holds the largest segment alone.
 TEST(Queues, MemoryForOneSegmentOnlyGivesTheSameBits) {

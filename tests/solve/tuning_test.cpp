@@ -103,21 +103,38 @@ TEST(Tuning, GroupFormDoesNotDependOnTheNeighbours) {
                    OpenClBackend(test::device(), {.tuning = alone}).solve(data, RobustPca{}));
 }
 
+TEST(Tuning, WorkGroupsOfProductsLeaveEveryBit) {
+  const auto solve = [](const RobustPca& method, int work_group) {
+    const Tuning tuning{.products = ProductPath::group, .work_group = work_group};
+    const SegmentBatch data = test::planted_batch({.columns = 31, .rank = 3}, {25, 70, 31, 300});
+    return OpenClBackend(test::device(), {.tuning = tuning}).solve(data, method);
+  };
+
+  for (const UpdateOrder order : {UpdateOrder::ae, UpdateOrder::ea}) {
+    const RobustPca method{.order = order};
+    const Solution expected = solve(method, 256);
+    for (const int work_group : {64, 128}) expect_same_bits(solve(method, work_group), expected);
+  }
+}
+
 TEST(Tuning, OutOfItsRangeIsRejected) {
   for (const Tuning& tuning :
        {Tuning{.tile_rows = 0}, Tuning{.tile_rows = 17}, Tuning{.tile_vectors = 9},
         Tuning{.sweep_rows = 257}, Tuning{.panel = 0}, Tuning{.batch_segments = -1},
-        Tuning{.queues = 0}, Tuning{.queues = 65}})
+        Tuning{.work_group = 8}, Tuning{.work_group = 512}, Tuning{.queues = 0},
+        Tuning{.queues = 65}})
     EXPECT_THROW(OpenClBackend(test::device(), {.tuning = tuning}), ArgumentError);
 }
 
-TEST(Tuning, DefaultFormOfTheEigensolverFollowsTheKindOfDevice) {
+TEST(Tuning, DefaultFormsFollowTheKindOfDevice) {
   DeviceInfo cpu, gpu;
   cpu.kind = DeviceKind::cpu;
   gpu.kind = DeviceKind::gpu;
 
   EXPECT_EQ(default_tuning(cpu).eigen, EigenForm::lanes);
+  EXPECT_EQ(default_tuning(cpu).products, ProductPath::own);
   EXPECT_EQ(default_tuning(gpu).eigen, EigenForm::group);
+  EXPECT_EQ(default_tuning(gpu).products, ProductPath::group);
 }
 
 TEST(Tuning, DefaultQueuesFollowTheComputeUnitsOfACpu) {
@@ -135,11 +152,13 @@ TEST(Tuning, DefaultQueuesFollowTheComputeUnitsOfACpu) {
   EXPECT_EQ(queues(DeviceKind::other, 64), 1);
 }
 
-TEST(Tuning, ForProductsOfALibraryServesMixedPrecisionWithOurOwn) {
-  const OpenClBackend backend(test::device(), {.precision = Precision::mixed,
-                                               .tuning = Tuning{.products = ProductPath::clblast}});
+TEST(Tuning, ForOtherProductsServesMixedPrecisionWithItsOwn) {
+  for (const ProductPath path : {ProductPath::clblast, ProductPath::group}) {
+    const OpenClBackend backend(
+        test::device(), {.precision = Precision::mixed, .tuning = Tuning{.products = path}});
 
-  EXPECT_EQ(backend.tuning().products, ProductPath::own);
+    EXPECT_EQ(backend.tuning().products, ProductPath::own);
+  }
 }
 
 TEST(Profiling, LeavesResultsAsTheyAreAndSeesEveryIteration) {
@@ -162,6 +181,25 @@ TEST(Profiling, LeavesResultsAsTheyAreAndSeesEveryIteration) {
   const double entries = (25.0 + 200 + 93 + 300) * 93;
   EXPECT_LE(sweep->work->flops, iterations * entries * (2 * 93 + 94 + 12));
   EXPECT_GT(sweep->work->flops, iterations * entries * 12);
+}
+
+TEST(Profiling, KnowsTheWorkOfProductsInWorkGroups) {
+  const Device profiled(test::device().info().name, Profiling::on);
+  const Tuning tuning{.products = ProductPath::group, .work_group = 128, .eigen = EigenForm::group};
+  const SegmentBatch data = test::planted_batch({.columns = 31, .rank = 3}, {25, 70});
+
+  const Solution solution = OpenClBackend(profiled, {.tuning = tuning}).solve(data, RobustPca{});
+
+  OpenClBackend usual(test::device(), {.tuning = tuning});
+  expect_same_bits(solution, usual.solve(data, RobustPca{}));
+  const auto kernels = profiled.profile()->kernels();
+  for (const char* name : {"gram", "apply", "reconstruct", "shrink"}) {
+    const auto kernel = std::ranges::find(kernels, name, &KernelProfile::kernel);
+    ASSERT_NE(kernel, kernels.end()) << name;
+    ASSERT_TRUE(kernel->work) << name;
+    EXPECT_GT(kernel->work->flops, 0) << name;
+  }
+  EXPECT_EQ(std::ranges::find(kernels, "sweep", &KernelProfile::kernel), kernels.end());
 }
 
 }  // namespace

@@ -85,6 +85,9 @@ class Batch {
   Buffer<BlockRecord> device_blocks_;
 };
 
+/// Which segments a Gram matrix is wanted of; `wide` permits to leave out the others.
+enum class GramOf { all, wide };
+
 /// Launches with one work-item per active segment, and per block of their rows.
 Grid per_segment(const Batch& batch);
 Grid per_block(const Batch& batch);

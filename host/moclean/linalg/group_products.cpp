@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "moclean/device/kernel_source.hpp"
+#include "moclean/linalg/work.hpp"
 #include "moclean/linalg/work_group.hpp"
 
 namespace moclean {
@@ -72,30 +73,52 @@ Grid GroupProducts::stacked_tiles(const Batch& batch) const {
   return tiles(batch, rows, batch.segment(0).pitch);
 }
 
-void GroupProducts::gram(const Batch& batch, const Buffer<double>& x, Buffer<double>& g) {
-  programs_->gram(square_tiles(batch), batch.device_segments(), batch.device_active(), x, g);
+void GroupProducts::gram(const Batch& batch, const Buffer<double>& x, Buffer<double>& g, GramOf) {
+  const auto work_of = [](std::size_t, const SegmentRecord& segment) { return gram_work(segment); };
+  programs_->gram.with([&] { return total_work(batch, work_of); })(
+      square_tiles(batch), batch.device_segments(), batch.device_active(), x, g);
 }
 
 void GroupProducts::reconstruct(const Batch& batch, const Buffer<double>& z,
                                 const Buffer<double>& f, const Buffer<std::int32_t>& terms,
                                 Buffer<double>& w) {
-  programs_->reconstruct(square_tiles(batch), batch.device_segments(), batch.device_active(), z, f,
-                         terms, w);
+  const auto work = [&] {
+    const auto counts = host_copy(terms);
+    return total_work(batch, [&](std::size_t b, const SegmentRecord& segment) {
+      return outer_products_work(segment, counts[b]);
+    });
+  };
+  programs_->reconstruct.with(work)(square_tiles(batch), batch.device_segments(),
+                                    batch.device_active(), z, f, terms, w);
 }
 
 void GroupProducts::apply(const Batch& batch, const Buffer<double>& x, const Buffer<double>& w,
                           Buffer<double>& a) {
-  programs_->apply(stacked_tiles(batch), batch.device_segments(), batch.device_active(), x, w, a);
+  stacked_product(programs_->apply, batch, x, w, a);
 }
 
 void GroupProducts::rotate(const Batch& batch, const Buffer<double>& x, const Buffer<double>& z,
                            Buffer<double>& b) {
-  programs_->rotate(stacked_tiles(batch), batch.device_segments(), batch.device_active(), x, z, b);
+  stacked_product(programs_->rotate, batch, x, z, b);
+}
+
+// The product of X with a square matrix from one side.
+void GroupProducts::stacked_product(Kernel& kernel, const Batch& batch, const Buffer<double>& x,
+                                    const Buffer<double>& square, Buffer<double>& product) const {
+  const auto work_of = [](std::size_t, const SegmentRecord& segment) {
+    return apply_work(segment);
+  };
+  kernel.with([&] { return total_work(batch, work_of); })(
+      stacked_tiles(batch), batch.device_segments(), batch.device_active(), x, square, product);
 }
 
 void GroupProducts::compose(const Batch& batch, const Buffer<double>& p, const Buffer<double>& z,
                             Buffer<double>& c) {
-  programs_->compose(square_tiles(batch), batch.device_segments(), batch.device_active(), p, z, c);
+  const auto work_of = [](std::size_t, const SegmentRecord& segment) {
+    return outer_products_work(segment, segment.order);
+  };
+  programs_->compose.with([&] { return total_work(batch, work_of); })(
+      square_tiles(batch), batch.device_segments(), batch.device_active(), p, z, c);
 }
 
 }  // namespace moclean

@@ -15,7 +15,8 @@ class GroupProducts {
   /// device can run; throws ArgumentError outside that range.
   explicit GroupProducts(const Device& device, int work_group = 256);
 
-  void gram(const Batch& batch, const Buffer<double>& x, Buffer<double>& g);
+  void gram(const Batch& batch, const Buffer<double>& x, Buffer<double>& g,
+            GramOf which = GramOf::all);
   void reconstruct(const Batch& batch, const Buffer<double>& z, const Buffer<double>& f,
                    const Buffer<std::int32_t>& terms, Buffer<double>& w);
   void apply(const Batch& batch, const Buffer<double>& x, const Buffer<double>& w,
@@ -39,6 +40,8 @@ class GroupProducts {
   Grid tiles(const Batch& batch, Index rows, Index columns) const;
   Grid square_tiles(const Batch& batch) const;
   Grid stacked_tiles(const Batch& batch) const;
+  void stacked_product(Kernel& kernel, const Batch& batch, const Buffer<double>& x,
+                       const Buffer<double>& square, Buffer<double>& product) const;
 
   std::optional<Programs> programs_;
   int work_group_;

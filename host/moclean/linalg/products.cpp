@@ -6,9 +6,11 @@
 namespace moclean {
 namespace {
 
-std::variant<OwnProducts, ClblastProducts> make_products(ProductPath path, const Device& device,
-                                                         const Tuning& tuning) {
+std::variant<OwnProducts, ClblastProducts, GroupProducts> make_products(ProductPath path,
+                                                                        const Device& device,
+                                                                        const Tuning& tuning) {
   if (path == ProductPath::clblast) return ClblastProducts(device);
+  if (path == ProductPath::group) return GroupProducts(device, tuning.work_group);
   return OwnProducts(device, tuning);
 }
 

@@ -2,7 +2,7 @@
 
 #include <variant>
 
-#include "moclean/linalg/batch.hpp"
+#include "moclean/linalg/group_products.hpp"
 #include "moclean/linalg/tuning.hpp"
 
 namespace moclean {
@@ -10,9 +10,6 @@ namespace moclean {
 /// -D options of the programs that use kernels/tiles.cl.
 Defines product_defines(const Device& device, NumberType type = NumberType::float64,
                         const Tuning& tuning = {});
-
-/// Which segments a Gram matrix is wanted of; `wide` permits to leave out the others.
-enum class GramOf { all, wide };
 
 /// Products of our own kernels (kernels/products.cl).
 class OwnProducts {
@@ -91,7 +88,7 @@ class Products {
 
  private:
   ProductPath path_;
-  std::variant<OwnProducts, ClblastProducts> products_;
+  std::variant<OwnProducts, ClblastProducts, GroupProducts> products_;
 };
 
 }  // namespace moclean

@@ -22,12 +22,16 @@ constexpr int most_default_queues = 4;
 
 }  // namespace
 
-std::string to_string(ProductPath path) { return path == ProductPath::own ? "own" : "clblast"; }
+std::string to_string(ProductPath path) {
+  if (path == ProductPath::group) return "group";
+  return path == ProductPath::own ? "own" : "clblast";
+}
 
 ProductPath parse_product_path(const std::string& text) {
   if (text == "own") return ProductPath::own;
   if (text == "clblast") return ProductPath::clblast;
-  throw ArgumentError("products are computed by own or clblast, not by '" + text + "'");
+  if (text == "group") return ProductPath::group;
+  throw ArgumentError("products are computed by own, clblast or group, not by '" + text + "'");
 }
 
 std::string to_string(EigenForm form) { return form == EigenForm::lanes ? "lanes" : "group"; }
@@ -43,12 +47,14 @@ void check(const Tuning& tuning) {
   require("tile_vectors", tuning.tile_vectors, 1, 8);
   require("sweep_rows", tuning.sweep_rows, 1, 256);
   require("panel", tuning.panel, 1, 16);
+  require("work_group", tuning.work_group, 16, 256);
   require("batch_segments", tuning.batch_segments, 0, std::numeric_limits<std::int32_t>::max());
   require("queues", tuning.queues, 1, 64);
 }
 
 Tuning default_tuning(const DeviceInfo& device) {
-  if (device.kind == DeviceKind::gpu) return {.eigen = EigenForm::group};
+  if (device.kind == DeviceKind::gpu)
+    return {.products = ProductPath::group, .eigen = EigenForm::group};
   if (device.kind != DeviceKind::cpu) return {};
   return {.queues = std::clamp(device.compute_units, 1, most_default_queues)};
 }
@@ -59,9 +65,11 @@ bool same_bits(const Tuning& a, const Tuning& b) {
 
 std::string to_string(const Tuning& tuning) {
   return fmt::format(
-      "tile {} x {}, sweep {} rows, panel {}, products {}, eigensolver {}, batch {}, queues {}",
+      "tile {} x {}, sweep {} rows, panel {}, products {}{}, eigensolver {}, batch {}, queues {}",
       tuning.tile_rows, tuning.tile_vectors, tuning.sweep_rows, tuning.panel,
-      to_string(tuning.products), to_string(tuning.eigen),
+      to_string(tuning.products),
+      tuning.products == ProductPath::group ? fmt::format(" of {}", tuning.work_group) : "",
+      to_string(tuning.eigen),
       tuning.batch_segments > 0 ? std::to_string(tuning.batch_segments) : "any", tuning.queues);
 }
 

@@ -7,12 +7,13 @@
 
 namespace moclean {
 
-/// Who computes the matrix products.
-enum class ProductPath { own, clblast };
+/// Who computes the matrix products: our kernels in explicit vectors, for CPUs; CLBlast; or our
+/// kernels in work-groups, for GPUs. `group` is also the form of what lies between two products.
+enum class ProductPath { own, clblast, group };
 
 std::string to_string(ProductPath path);
 
-/// Reads `own` or `clblast`; throws ArgumentError for anything else.
+/// Reads `own`, `clblast` or `group`; throws ArgumentError for anything else.
 ProductPath parse_product_path(const std::string& text);
 
 /// How the eigensolver divides its work: matrices in the lanes of vectors (SymmetricEigen), or a
@@ -26,10 +27,10 @@ EigenForm parse_eigen_form(const std::string& text);
 
 /// Choices that make the solver faster or slower on a device. The defaults are those of a CPU.
 ///
-/// tile_rows, tile_vectors, sweep_rows, panel, batch_segments and queues leave every bit of A and E
-/// as it is: each entry is summed in the same order whatever their values. Only the reported
-/// residual, a sum over tiles, may change in its last digits. products and eigen round differently;
-/// results agree within the bounds of moclean/denoise/agreement.hpp.
+/// tile_rows, tile_vectors, sweep_rows, panel, work_group, batch_segments and queues leave every
+/// bit of A and E as it is: each entry is summed in the same order whatever their values. Only the
+/// reported residual, a sum over tiles, may change in its last digits. products and eigen round
+/// differently; results agree within the bounds of moclean/denoise/agreement.hpp.
 struct Tuning {
   int tile_rows = 8;     ///< of a register tile, 1 .. 16
   int tile_vectors = 3;  ///< across a register tile, 1 .. 8
@@ -40,6 +41,9 @@ struct Tuning {
   /// 4 x 8 columns of 93 rows fill three quarters of that cache.
   int panel = 4;
   ProductPath products = ProductPath::own;
+  /// Work-items of a work-group of products in groups, 16 .. 256: rounded down to a power of two
+  /// and to what the device can run.
+  int work_group = 256;
   EigenForm eigen = EigenForm::lanes;
   /// Most segments of a batch, as far as they fit the memory; 0: as many as suit the device's
   /// memory and, on a CPU, its cache.
@@ -53,8 +57,8 @@ struct Tuning {
 /// Throws ArgumentError naming the first choice out of its range.
 void check(const Tuning& tuning);
 
-/// What is sound on a device before anything was measured: on a GPU the eigensolver's group form
-/// and one queue; on a CPU a queue per compute unit, up to four.
+/// What is sound on a device before anything was measured: on a GPU the group forms of eigensolver
+/// and products, and one queue; on a CPU a queue per compute unit, up to four.
 Tuning default_tuning(const DeviceInfo& device);
 
 /// Whether two tunings give the same bits of A and E: the same products and form of eigensolver.

@@ -26,8 +26,9 @@ std::uint64_t shared_cache(const DeviceInfo& device) {
 Tuning tuning_of(const Device& device, const OpenClOptions& options) {
   Tuning tuning = options.tuning.value_or(default_tuning(device.info()));
   const bool mixed = options.precision == Precision::mixed;
-  if (mixed && options.products == ProductPath::clblast)
-    throw ArgumentError("mixed precision works with our own products only, not with CLBlast's");
+  if (mixed && options.products && *options.products != ProductPath::own)
+    throw ArgumentError("mixed precision has products of its own (own), not " +
+                        to_string(*options.products));
   if (mixed) tuning.products = ProductPath::own;
   if (options.products) tuning.products = *options.products;
   return tuning;

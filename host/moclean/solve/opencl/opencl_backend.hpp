@@ -32,8 +32,8 @@ inline constexpr double mixed_tolerance = 1e-6;
 class OpenClBackend final : public Backend {
  public:
   /// `device` has to outlive the backend. Throws ArgumentError for a tuning out of its range, and
-  /// for `products` of CLBlast in mixed precision; a `tuning` that asks for them gets our own
-  /// there. Compiles nothing, see prepare().
+  /// for `products` other than ProductPath::own in mixed precision; a `tuning` that asks for others
+  /// gets these there. Compiles nothing, see prepare().
   explicit OpenClBackend(const Device& device, const OpenClOptions& options = {});
   ~OpenClBackend() override;
 

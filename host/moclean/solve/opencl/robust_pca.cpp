@@ -37,12 +37,6 @@ double next_tau(double tau, const RobustPca& method) {
   return std::max(tau / method.rho, 1 / (method.mu0_factor * method.mu_max_factor));
 }
 
-Defines sweep_defines(const Device& device, NumberType type, const Tuning& tuning) {
-  Defines defines = product_defines(device, type, tuning);
-  defines["SWEEP_ROWS"] = std::to_string(tuning.sweep_rows);
-  return defines;
-}
-
 /// Active segments whose norm is not zero; the others are solved by A = E = 0.
 std::vector<std::int32_t> nonzero_segments(const Batch& batch, const Buffer<double>& frobenius) {
   std::vector<double> norms(static_cast<std::size_t>(batch.segments()));
@@ -56,27 +50,27 @@ std::vector<std::int32_t> nonzero_segments(const Batch& batch, const Buffer<doub
 }  // namespace
 
 template <class Real>
+RobustPcaSolver<Real>::GramKernels::GramKernels(const Device& device, const Tuning& tuning)
+    : program(device, kernel_source::grams, sweep_defines(device, NumberType::float64, tuning)),
+      sum(program, "sum_grams"),
+      of_floats(program, "gram_of_floats"),
+      of_wide_floats(program, "gram_of_wide_floats"),
+      narrow(program, "narrow") {}
+
+template <class Real>
 RobustPcaSolver<Real>::RobustPcaSolver(const Device& device, const Tuning& tuning)
     : device_(device),
       sweep_rows_((check(tuning), tuning.sweep_rows)),
       products_(tuning.products, device, tuning),
       eigen_(device, tuning, mixed ? 1e-8 : 1e-12),  // far below what the iteration makes of it
       norms_(device),
+      entries_(device, tuning),
       steps_(device, kernel_source::robust_pca, common_defines(device)),
-      sweeps_(device, kernel_source::sweep, sweep_defines(device, number_type<Real>, tuning)),
-      grams_(device, kernel_source::grams, sweep_defines(device, NumberType::float64, tuning)),
       start_state_(steps_, "start_state"),
       threshold_(steps_, "threshold"),
-      advance_(steps_, "advance"),
-      start_(sweeps_, "start"),
-      form_(sweeps_, "form"),
-      sweep_(sweeps_, "sweep"),
-      shrink_(sweeps_, "shrink"),
-      finish_(sweeps_, "finish"),
-      sum_grams_(grams_, "sum_grams"),
-      gram_of_floats_(grams_, "gram_of_floats"),
-      gram_of_wide_floats_(grams_, "gram_of_wide_floats"),
-      narrow_(grams_, "narrow") {}
+      advance_(steps_, "advance") {
+  if (tuning.products == ProductPath::own) grams_.emplace(device, tuning);
+}
 
 template <class Real>
 std::uint64_t RobustPcaSolver<Real>::memory_of(Index rows, Index columns,
@@ -109,24 +103,24 @@ template <class Real>
 void RobustPcaSolver<Real>::gram_of_floats(const Batch& batch, Memory& m, const Buffer<Real>& wide,
                                            bool shifted) {
   if constexpr (mixed) {
-    gram_of_floats_.with([&] { return tall_gram_work(batch, sizeof(Real)); })(
+    grams_->of_floats.with([&] { return tall_gram_work(batch, sizeof(Real)); })(
         per_block(batch), batch.device_segments(), batch.device_blocks(), batch.active_blocks(),
         m.states, m.decompose, cl_int{shifted}, m.D, m.T, m.A, m.widened, m.V, m.partial_grams);
     sum_partial_grams(batch, m, m.V);
     if (batch.has_wide())
-      gram_of_wide_floats_(per_row(batch), batch.device_segments(), batch.device_active(), wide,
-                           m.V);
+      grams_->of_wide_floats(per_row(batch), batch.device_segments(), batch.device_active(), wide,
+                             m.V);
   }
 }
 
 template <class Real>
 void RobustPcaSolver<Real>::sum_partial_grams(const Batch& batch, Memory& m, Buffer<double>& g) {
   if (batch.partial_size() > 0)
-    sum_grams_(per_row(batch), batch.device_segments(), batch.device_active(), m.partial_grams, g);
+    grams_->sum(per_row(batch), batch.device_segments(), batch.device_active(), m.partial_grams, g);
 }
 
-// Whether an iteration is one sweep over the rows, or one matrix after the other: by a library, or
-// where entries are missing.
+// Whether an iteration is one sweep over the rows, or one matrix after the other: by a library, in
+// work-groups, or where entries are missing.
 template <class Real>
 bool RobustPcaSolver<Real>::swept(const Memory& m) const {
   return products_.path() == ProductPath::own && !m.missing;
@@ -152,8 +146,7 @@ void RobustPcaSolver<Real>::start(const Batch& batch, Memory& m, const RobustPca
                method.mu0_factor, method.mu_max_factor, method.rho, cl_int{m.ea},
                cl_int{!m.ea && !graded(m.tau) && !m.missing}, method.max_iterations, m.keep_below,
                m.states, m.dual, m.decompose);
-  start_(per_block(batch), batch.device_segments(), batch.device_blocks(), batch.active_blocks(),
-         m.states, m.D, cl_int{m.missing}, m.missing ? m.observed : m.D, m.T, m.A);
+  entries_.start(batch, m);
 }
 
 // X where it is needed as a whole, and its Gram matrix where the last sweep has not formed it.
@@ -162,9 +155,7 @@ void RobustPcaSolver<Real>::prepare(const Batch& batch, Memory& m) {
   const bool fused = !mixed && swept(m);
   const bool first = m.iteration == 0 && m.ea;
   const bool whole = graded(m.tau) || !swept(m) || (fused && first);
-  if (whole || batch.has_wide())
-    form_(per_block(batch), batch.device_segments(), batch.device_blocks(), batch.active_blocks(),
-          m.states, cl_int{!whole}, m.D, m.T, m.A, m.E, m.X);
+  if (whole || batch.has_wide()) entries_.form(batch, m, whole ? GramOf::all : GramOf::wide);
   if (graded(m.tau)) return;
   if constexpr (mixed)
     gram_of_floats(batch, m, m.X, true);
@@ -208,20 +199,14 @@ void RobustPcaSolver<Real>::threshold(const Batch& batch, Memory& m, bool low_ra
 template <class Real>
 void RobustPcaSolver<Real>::sweep(const Batch& batch, Memory& m, bool with_gram) {
   const bool fused = with_gram && !mixed;
-  const auto run = [&](const auto& W, const auto& V, const auto& Z, const auto& f) {
-    sweep_.with([&] { return sweep_work(batch, host_copy(m.states), fused, sizeof(Real)); })(
-        per_block(batch), batch.device_segments(), batch.device_blocks(), batch.active_blocks(),
-        m.states, m.D, m.X, m.T, m.A, m.E, W, V, Z, f, m.scratch, cl_int{fused}, m.G,
-        m.partial_grams, m.partial_squares, m.partial_sparse);
-  };
   products_.reconstruct(batch, m.Z, m.f, m.terms, m.W);
   if constexpr (mixed) {
     // What the sweep multiplies by, in single precision.
-    narrow_(per_row(batch), batch.device_segments(), batch.device_active(), m.states, m.W, m.V, m.Z,
-            m.f, m.W_real, m.V_real, m.Z_real, m.f_real);
-    run(m.W_real, m.V_real, m.Z_real, m.f_real);
+    grams_->narrow(per_row(batch), batch.device_segments(), batch.device_active(), m.states, m.W,
+                   m.V, m.Z, m.f, m.W_real, m.V_real, m.Z_real, m.f_real);
+    entries_.sweep(batch, m, m.W_real, m.V_real, m.Z_real, m.f_real, fused);
   } else {
-    run(m.W, m.V, m.Z, m.f);
+    entries_.sweep(batch, m, m.W, m.V, m.Z, m.f, fused);
     if (fused) sum_partial_grams(batch, m, m.G);
   }
 }
@@ -232,10 +217,7 @@ void RobustPcaSolver<Real>::apply_and_shrink(const Batch& batch, Memory& m) {
   if constexpr (!mixed) {
     products_.reconstruct(batch, m.Z, m.f, m.terms, m.W);
     products_.apply(batch, m.X, m.W, m.A);
-    shrink_.with([&] { return shrink_work(batch, host_copy(m.states), sizeof(Real)); })(
-        per_block(batch), batch.device_segments(), batch.device_blocks(), batch.active_blocks(),
-        m.states, m.D, cl_int{m.missing}, m.missing ? m.observed : m.D, m.X, m.A, m.T,
-        m.partial_squares, m.partial_sparse);
+    entries_.shrink(batch, m);
   }
 }
 
@@ -378,8 +360,7 @@ void RobustPcaSolver<Real>::solve(const SegmentBatch& data, Index first, Index l
     solve_active(batch, m, method, finished, stop);
   }
   batch.select(all);
-  finish_(per_block(batch), batch.device_segments(), batch.device_blocks(), batch.active_blocks(),
-          m.states, m.E, m.T);
+  entries_.finish(batch, m);
   eigen_.check(batch);
 
   download(m.A, stacked_rows(solution.low_rank, first, last));

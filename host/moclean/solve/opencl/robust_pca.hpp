@@ -8,7 +8,7 @@
 #include "moclean/linalg/norms.hpp"
 #include "moclean/linalg/products.hpp"
 #include "moclean/solve/backend.hpp"
-#include "moclean/solve/opencl/robust_pca_memory.hpp"
+#include "moclean/solve/opencl/entry_steps.hpp"
 
 namespace moclean::opencl {
 
@@ -34,6 +34,14 @@ class RobustPcaSolver {
  private:
   using Memory = RobustPcaMemory<Real>;
   static constexpr bool mixed = Memory::mixed;
+
+  // Of kernels/grams.cl: what a sweep leaves to be summed, and mixed precision.
+  struct GramKernels {
+    GramKernels(const Device& device, const Tuning& tuning);
+
+    Program program;
+    Kernel sum, of_floats, of_wide_floats, narrow;
+  };
 
   static bool graded(double tau);
   bool swept(const Memory& m) const;
@@ -62,10 +70,10 @@ class RobustPcaSolver {
   Products products_;
   Eigensolver eigen_;
   Norms<Real> norms_;
-  Program steps_, sweeps_, grams_;
-  Kernel start_state_, threshold_, advance_;                          // of steps_
-  Kernel start_, form_, sweep_, shrink_, finish_;                     // of sweeps_
-  Kernel sum_grams_, gram_of_floats_, gram_of_wide_floats_, narrow_;  // of grams_
+  EntrySteps<Real> entries_;
+  std::optional<GramKernels> grams_;  // where an iteration is one sweep
+  Program steps_;
+  Kernel start_state_, threshold_, advance_;  // of steps_
 };
 
 }  // namespace moclean::opencl
