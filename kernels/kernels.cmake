@@ -1,6 +1,7 @@
 # moclean_embed_kernels(TARGET STEM...): every kernels/STEM.cl becomes one generated .cpp of TARGET that
 # defines moclean::kernel_source::STEM (declared in host/moclean/device/kernel_source.hpp).
-set(moclean_included_kernels ${PROJECT_SOURCE_DIR}/kernels/entry.cl
+set(moclean_included_kernels
+    ${PROJECT_SOURCE_DIR}/kernels/conjugate_sums.cl ${PROJECT_SOURCE_DIR}/kernels/entry.cl
     ${PROJECT_SOURCE_DIR}/kernels/state.cl ${PROJECT_SOURCE_DIR}/kernels/tiles.cl)
 function(moclean_embed_kernels target)
   foreach(kernel ${ARGN})

@@ -118,21 +118,22 @@ TEST_P(MatrixNormalContract, ReportsEverySegmentAndStopsWhenAsked) {
 
 INSTANTIATE_TEST_SUITE_P(Backends, MatrixNormalContract,
                          testing::Values(BackendKind::reference, BackendKind::opencl_own,
-                                         BackendKind::opencl_clblast),
+                                         BackendKind::opencl_clblast, BackendKind::opencl_group128),
                          [](const auto& parameter) { return to_string(parameter.param); });
 
 struct Shape {
   Index rows, columns;
 };
 
-class MatrixNormalAgreement : public testing::TestWithParam<Shape> {};
+class MatrixNormalAgreement : public testing::TestWithParam<std::tuple<BackendKind, Shape>> {};
 
 TEST_P(MatrixNormalAgreement, OfDeviceAndReference) {
-  const auto [rows, columns] = GetParam();
+  const auto& [kind, shape] = GetParam();
+  const auto [rows, columns] = shape;
   const SegmentBatch data = batch_of({rows, rows + 1}, columns);
   const MatrixNormal method = columns % 3 == 0 ? with_knowledge(data) : MatrixNormal{};
 
-  const Solution device = OpenClBackend(test::device()).solve(data, method);
+  const Solution device = test::make_backend(kind)->solve(data, method);
   const Solution reference = ReferenceBackend(2).solve(data, method);
 
   for (Index b = 0; b < data.segments(); ++b) {
@@ -147,14 +148,37 @@ TEST_P(MatrixNormalAgreement, OfDeviceAndReference) {
   }
 }
 
+std::string name_of(const testing::TestParamInfo<MatrixNormalAgreement::ParamType>& parameter) {
+  const auto& [kind, shape] = parameter.param;
+  return to_string(kind) + "_" + std::to_string(shape.rows) + "x" + std::to_string(shape.columns);
+}
+
 INSTANTIATE_TEST_SUITE_P(Shapes, MatrixNormalAgreement,
-                         testing::Values(Shape{1, 1}, Shape{3, 5}, Shape{9, 6}, Shape{64, 64},
-                                         Shape{200, 93}, Shape{61, 129}, Shape{25, 93},
-                                         Shape{300, 9}, Shape{530, 12}),
-                         [](const auto& parameter) {
-                           return std::to_string(parameter.param.rows) + "x" +
-                                  std::to_string(parameter.param.columns);
-                         });
+                         testing::Combine(testing::Values(BackendKind::opencl_own),
+                                          testing::Values(Shape{1, 1}, Shape{3, 5}, Shape{9, 6},
+                                                          Shape{64, 64}, Shape{200, 93},
+                                                          Shape{61, 129}, Shape{25, 93},
+                                                          Shape{300, 9}, Shape{530, 12})),
+                         name_of);
+
+INSTANTIATE_TEST_SUITE_P(WorkGroups, MatrixNormalAgreement,
+                         testing::Combine(testing::Values(BackendKind::opencl_group64,
+                                                          BackendKind::opencl_group128,
+                                                          BackendKind::opencl_group256),
+                                          testing::Values(Shape{1, 1}, Shape{3, 5}, Shape{9, 6},
+                                                          Shape{25, 33}, Shape{530, 12})),
+                         name_of);
+
+TEST(MatrixNormalDevice, WorkGroupsOfProductsLeaveEveryBit) {
+  const SegmentBatch data = batch_of({50, 12, 290}, 21);
+  const auto solve = [&](BackendKind kind) {
+    return test::make_backend(kind)->solve(data, MatrixNormal{.soft_steps = 2, .hard_steps = 1});
+  };
+  const Solution expected = solve(BackendKind::opencl_group256);
+
+  for (const BackendKind kind : {BackendKind::opencl_group64, BackendKind::opencl_group128})
+    EXPECT_TRUE(test::same_bits(solve(kind).low_rank, expected.low_rank)) << to_string(kind);
+}
 
 TEST(MatrixNormalDevice, IsCutToTheMemoryLimitWithoutChangingABit) {
   const SegmentBatch data = batch_of({50, 12, 33, 90}, 21);

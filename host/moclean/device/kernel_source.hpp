@@ -22,6 +22,8 @@ extern const std::string_view peak;
 extern const std::string_view products;
 extern const std::string_view robust_pca;
 extern const std::string_view scale_rows;
+extern const std::string_view search_direction;
+extern const std::string_view search_direction_group;
 extern const std::string_view sweep;
 extern const std::string_view temporal;
 

@@ -1,5 +1,7 @@
 #include "moclean/solve/opencl/entry_steps.hpp"
 
+#include <algorithm>
+
 #include "moclean/core/error.hpp"
 #include "moclean/device/kernel_source.hpp"
 #include "moclean/linalg/products.hpp"

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <string_view>
 
 #include "moclean/linalg/tuning.hpp"
 #include "moclean/solve/opencl/robust_pca_memory.hpp"

@@ -6,14 +6,12 @@
 #include <utility>
 
 #include "moclean/core/error.hpp"
-#include "moclean/device/kernel_source.hpp"
 #include "moclean/solve/matrix_normal_steps.hpp"
 
 namespace moclean::opencl {
 namespace {
 
 constexpr Index stacked_matrices = 10, square_matrices = 3, vectors = 3;
-constexpr int chunk_rows = 32;  // with R's columns of a tile they fill a first-level cache
 
 // A window shorter than it is wide is extended until it is square.
 Index extended_rows(Index rows, Index columns) { return std::max(rows, columns); }
@@ -33,34 +31,14 @@ struct MatrixNormalSolver::Run {
       const MatrixNormal& method)
       : host(extended_shape(data, first, last)),
         batch(device, host, 0, last - first),
-        D(device, batch.stacked_size()),
-        W(device, batch.stacked_size()),
-        S(device, batch.stacked_size()),
-        r(device, batch.stacked_size()),
-        z(device, batch.stacked_size()),
-        p(device, batch.stacked_size()),
-        p_before(device, batch.stacked_size()),
-        product(device, batch.stacked_size()),
-        inverse_pivot(device, batch.stacked_size()),
-        first_band(device, batch.stacked_size()),
+        gradients(device, batch),
         Q(device, batch.square_size()),
         Z(device, batch.square_size()),
-        R(device, batch.square_size()),
         eigenvalues(device, batch.vector_size()),
         f(device, batch.vector_size()),
-        stiffness(device, batch.vector_size()),
-        least(device, windows()),
-        rz(device, partial_sums(device)),
-        rz_before(device, partial_sums(device)),
-        bz(device, partial_sums(device)),
-        partial_pq(device, batch.block_count()),
-        scratch(device, batch.block_count() * static_cast<std::size_t>(chunk_rows * batch.pitch())),
-        terms(device, windows()),
-        iterations(device, windows()) {
+        terms(device, windows()) {
     // What no launch writes stays defined: padding, and the entries of windows not active.
-    for (auto* buffer : {&W, &S, &r, &z, &p, &p_before, &product, &Q, &Z, &R, &eigenvalues})
-      buffer->fill_zero();
-    iterations.fill_zero();
+    for (auto* buffer : {&Q, &Z, &eigenvalues}) buffer->fill_zero();
     std::vector<std::int32_t> active;
     for (Index b = first; b < last; ++b) {
       steps.emplace_back(data.segment(b), method, b);
@@ -70,9 +48,6 @@ struct MatrixNormalSolver::Run {
   }
 
   std::size_t windows() const { return static_cast<std::size_t>(batch.segments()); }
-  std::size_t partial_sums(const Device& device) const {
-    return windows() * static_cast<std::size_t>(batch.pitch() / vector_width(device));
-  }
   MatrixNormalWindow& window(std::int32_t b) { return steps[static_cast<std::size_t>(b)]; }
 
   // Writes value_of(b) of every active window, [rows x columns].
@@ -96,8 +71,8 @@ struct MatrixNormalSolver::Run {
     std::vector<double> shares(windows(), 0);
     for (const std::int32_t b : batch.active())
       shares[static_cast<std::size_t>(b)] = least_preconditioner_weight * value_of(b).mean();
-    least.write(shares);
-    upload_vector(value_of, stiffness);
+    gradients.least.write(shares);
+    upload_vector(value_of, gradients.stiffness);
   }
 
   Eigen::Map<Eigen::VectorXd> vector_of(std::vector<double>& values, std::int32_t b) const {
@@ -113,11 +88,9 @@ struct MatrixNormalSolver::Run {
 
   SegmentBatch host;  // stacked matrices on their way
   Batch batch;
-  Buffer<double> D, W, S, r, z, p, p_before, product, inverse_pivot, first_band;
-  Buffer<double> Q, Z, R;
-  Buffer<double> eigenvalues, f, stiffness, least;
-  Buffer<double> rz, rz_before, bz, partial_pq, scratch;
-  Buffer<std::int32_t> terms, iterations;
+  ConjugateGradients::Memory gradients;
+  Buffer<double> Q, Z, eigenvalues, f;
+  Buffer<std::int32_t> terms;
   std::vector<MatrixNormalWindow> steps;
 };
 
@@ -125,29 +98,20 @@ MatrixNormalSolver::MatrixNormalSolver(const Device& device, const Tuning& tunin
     : device_(device),
       products_((moclean::check(tuning), tuning.products), device, tuning),
       eigen_(device, tuning),
-      program_(device, kernel_source::conjugate_gradients,
-               [&] {
-                 Defines defines = product_defines(device, NumberType::float64, tuning);
-                 defines["CHUNK"] = std::to_string(chunk_rows);
-                 return defines;
-               }()),
-      factor_(program_, "factor"),
-      start_(program_, "start"),
-      direction_(program_, "direction"),
-      update_(program_, "update") {}
+      gradients_(device, tuning) {}
 
 std::uint64_t MatrixNormalSolver::memory_of(Index rows, Index columns, const MatrixNormal&) const {
   const Index pitch = padded(columns), extended = extended_rows(rows, columns);
   const Index blocks = (extended + block_rows - 1) / block_rows;
   const Index doubles = stacked_matrices * extended * pitch + square_matrices * columns * pitch +
-                        (vectors + 3) * pitch + blocks * (1 + chunk_rows * pitch);
+                        (vectors + 3) * pitch + blocks + gradients_.scratch_of(extended, columns);
   return static_cast<std::uint64_t>(doubles) * sizeof(double) + eigen_.memory_of(columns) +
          sizeof(SegmentRecord) + 4 * sizeof(double) +
          static_cast<std::uint64_t>(blocks) * sizeof(BlockRecord);
 }
 
-// A to run.product: accelerations of the motion in run.host, grown where noise matters. Windows
-// that need no growth are left out of it: they do not depend on others, bit for bit.
+// A to run.gradients.product: accelerations of the motion in run.host, grown where noise matters.
+// Windows that need no growth are left out of it: they do not depend on others, bit for bit.
 void MatrixNormalSolver::accelerate(Run& run) {
   std::vector<double> weights(run.batch.vector_size(), 0);
   std::vector<std::int32_t> growing;
@@ -157,21 +121,21 @@ void MatrixNormalSolver::accelerate(Run& run) {
       growing.push_back(b);
     }
   run.upload([&](std::int32_t b) { return run.window(b).accelerations(run.host.segment(b)); },
-             run.product);
+             run.gradients.product);
   if (growing.empty()) return;
-  run.r.write(run.host.storage());
+  run.gradients.r.write(run.host.storage());
   run.f.write(weights);
   const std::vector<std::int32_t> all(run.batch.active().begin(), run.batch.active().end());
   run.batch.select(growing);
-  products_.reconstruct(run.batch, run.Z, run.f, run.terms, run.R);
-  products_.apply(run.batch, run.r, run.R, run.product);
+  products_.reconstruct(run.batch, run.Z, run.f, run.terms, run.gradients.R);
+  products_.apply(run.batch, run.gradients.r, run.gradients.R, run.gradients.product);
   run.batch.select(all);
 }
 
 // Q and R from the motion in run.host.
 void MatrixNormalSolver::learn(Run& run) {
   accelerate(run);
-  products_.gram(run.batch, run.product, run.Q);
+  products_.gram(run.batch, run.gradients.product, run.Q);
   eigen_(run.batch, run.Q, run.Z, run.eigenvalues);
   std::vector<double> values(run.batch.vector_size());
   run.eigenvalues.read(values);
@@ -180,33 +144,12 @@ void MatrixNormalSolver::learn(Run& run) {
         return run.window(b).inverse_spectrum(run.vector_of(values, b));
       },
       run.f);
-  products_.reconstruct(run.batch, run.Z, run.f, run.terms, run.R);
+  products_.reconstruct(run.batch, run.Z, run.f, run.terms, run.gradients.R);
 }
 
 // S = argmin sum W (D - S)^2 + tr(Delta S R (Delta S)') from S on, by conjugate gradients.
 void MatrixNormalSolver::smooth(Run& run, const MatrixNormal& method) {
-  const Batch& batch = run.batch;
-  const Grid columns{.x = static_cast<std::size_t>(batch.pitch() / vector_width(device_)),
-                     .y = static_cast<std::size_t>(batch.active_count())};
-  factor_(columns, batch.device_segments(), batch.device_active(), run.W, run.stiffness, run.least,
-          run.inverse_pivot, run.first_band);
-  const auto search = [&](const Buffer<double>& z, double tolerance, bool begins) {
-    direction_(per_block(batch), batch.device_segments(), batch.device_blocks(),
-               batch.active_blocks(), run.W, run.R, z, run.p_before, run.rz, run.rz_before, run.bz,
-               cl_double{tolerance}, cl_int{begins}, run.scratch, run.p, run.product,
-               run.partial_pq, run.iterations);
-  };
-  search(run.S, -1, true);
-  start_(columns, batch.device_segments(), batch.device_active(), run.D, run.W, run.stiffness,
-         run.inverse_pivot, run.first_band, run.product, run.r, run.z, run.rz, run.bz);
-  for (int i = 0; i < method.solve_iterations; ++i) {
-    search(run.z, method.solve_tolerance, i == 0);
-    update_(columns, batch.device_segments(), batch.device_active(), run.stiffness,
-            run.inverse_pivot, run.first_band, run.p, run.product, run.partial_pq, run.rz, run.bz,
-            cl_double{method.solve_tolerance}, run.S, run.r, run.z, run.rz_before);
-    std::swap(run.rz, run.rz_before);
-    std::swap(run.p, run.p_before);
-  }
+  gradients_(run.batch, run.gradients, products_, method.solve_iterations, method.solve_tolerance);
 }
 
 // S from the first guess, smoothed with a diagonal R.
@@ -220,34 +163,36 @@ void MatrixNormalSolver::first_smoothing(Run& run, const MatrixNormal& method) {
         diagonals[static_cast<std::size_t>(b)] = std::move(guess.stiffness);
         return guess.motion;
       },
-      run.S);
-  run.D.write(run.host.storage());
-  run.R.write(R);
+      run.gradients.S);
+  run.gradients.D.write(run.host.storage());
+  run.gradients.R.write(R);
   run.set_stiffness([&](std::int32_t b) { return diagonals[static_cast<std::size_t>(b)]; });
   run.upload(
       [&](std::int32_t b) {
         return Matrix::Ones(run.window(b).rows(), run.window(b).columns()).eval();
       },
-      run.W);
+      run.gradients.W);
   smooth(run, method);
 }
 
 // Weights and targets from the residuals, on the host.
 void MatrixNormalSolver::weigh(Run& run) {
   std::vector<double> R(run.batch.square_size());
-  run.R.read(R);
+  run.gradients.R.read(R);
   std::vector<Eigen::VectorXd> diagonals(run.windows());
-  run.S.read(run.host.storage());
+  run.gradients.S.read(run.host.storage());
   for (const std::int32_t b : run.batch.active()) {
     Eigen::VectorXd& diagonal = diagonals[static_cast<std::size_t>(b)];
     diagonal = run.diagonal_of(R, b);
     run.window(b).weigh(run.host.segment(b), diagonal);
   }
   run.set_stiffness([&](std::int32_t b) { return diagonals[static_cast<std::size_t>(b)]; });
-  run.upload([&](std::int32_t b) -> const Matrix& { return run.window(b).weights(); }, run.W);
+  run.upload([&](std::int32_t b) -> const Matrix& { return run.window(b).weights(); },
+             run.gradients.W);
   const auto changed = [&](std::int32_t b) { return run.window(b).target_changed(); };
   if (std::ranges::any_of(run.batch.active(), changed))
-    run.upload([&](std::int32_t b) -> const Matrix& { return run.window(b).target(); }, run.D);
+    run.upload([&](std::int32_t b) -> const Matrix& { return run.window(b).target(); },
+               run.gradients.D);
 }
 
 void MatrixNormalSolver::solve(const SegmentBatch& data, Index first, Index last,
@@ -258,8 +203,8 @@ void MatrixNormalSolver::solve(const SegmentBatch& data, Index first, Index last
     run.terms.write(
         std::vector<std::int32_t>(run.windows(), static_cast<std::int32_t>(data.columns())));
     first_smoothing(run, method);
-    run.iterations.fill_zero();
-    run.S.read(run.host.storage());
+    run.gradients.iterations.fill_zero();
+    run.gradients.S.read(run.host.storage());
   }
   const int steps = method.soft_steps + method.hard_steps;
   for (int step = 0; step < steps && run.batch.active_count() > 0; ++step) {
@@ -270,7 +215,7 @@ void MatrixNormalSolver::solve(const SegmentBatch& data, Index first, Index last
     learn(run);
     weigh(run);
     smooth(run, method);
-    run.S.read(run.host.storage());  // for the noise, and for the next step to learn from
+    run.gradients.S.read(run.host.storage());  // for the noise, and for the next step to learn from
     for (const std::int32_t b : run.batch.active())
       run.window(b).estimate_noise(run.host.segment(b));
   }
@@ -281,7 +226,7 @@ void MatrixNormalSolver::solve(const SegmentBatch& data, Index first, Index last
 
 void MatrixNormalSolver::finish(Run& run, Index first, Solution& solution) {
   std::vector<std::int32_t> iterations(run.windows());
-  run.iterations.read(iterations);
+  run.gradients.iterations.read(iterations);
   for (std::size_t i = 0; i < run.windows(); ++i) {
     const Index b = first + static_cast<Index>(i);
     const MatrixNormalWindow& window = run.steps[i];

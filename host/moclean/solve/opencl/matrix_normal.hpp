@@ -6,6 +6,7 @@
 #include "moclean/linalg/eigensolver.hpp"
 #include "moclean/linalg/products.hpp"
 #include "moclean/solve/backend.hpp"
+#include "moclean/solve/opencl/conjugate_gradients.hpp"
 
 namespace moclean::opencl {
 
@@ -40,8 +41,7 @@ class MatrixNormalSolver {
   const Device& device_;
   Products products_;
   Eigensolver eigen_;
-  Program program_;
-  Kernel factor_, start_, direction_, update_;
+  ConjugateGradients gradients_;
 };
 
 }  // namespace moclean::opencl

@@ -1,0 +1,150 @@
+// The next direction of conjugate gradients and its product, in the notation of
+// conjugate_gradients.cl, a work-item per block of rows:
+//
+//   direction   p = z + beta p,  q = W o p + Delta'Delta p R,  p.q per block
+//
+// Delta'Delta p is kept for CHUNK rows at a time. Launch: one work-item per block of rows.
+
+#include "conjugate_sums.cl"
+#include "tiles.cl"
+
+#ifndef CHUNK
+#error "CHUNK is not defined: rows from the second differences to their product with R"
+#endif
+
+// What a block works on.
+typedef struct {
+  global const real *z, *p_before;
+  real beta;
+  size_t begin;  // of the segment
+} search_t;
+
+INLINE vreal direction_at(const search_t c, const segment_t s, int row, int column) {
+  const size_t at = c.begin + row * (size_t)s.pitch + column;
+  return c.beta == 0 ? load(c.z + at) : fma((vreal)c.beta, load(c.p_before + at), load(c.z + at));
+}
+
+// Second difference that begins with frame k, given its first two rows; 0 beyond the ends.
+INLINE vreal acceleration(const segment_t s, int k, vreal p0, vreal p1, vreal p2) {
+  return coupled(k, s.rows) * (p0 - 2 * p1 + p2);
+}
+
+// p for the rows [row, end) of a vector of columns, and Delta'Delta p to `scratch`.
+INLINE void differences(const search_t c, const segment_t s, int row, int end, int column,
+                        global real* p, global real* scratch) {
+  const int last = s.rows - 1;
+  vreal far = direction_at(c, s, max(row - 2, 0), column);
+  vreal near = direction_at(c, s, max(row - 1, 0), column);
+  vreal p0 = direction_at(c, s, row, column);
+  vreal p1 = direction_at(c, s, min(row + 1, last), column);
+  vreal a2 = acceleration(s, row - 2, far, near, p0), a1 = acceleration(s, row - 1, near, p0, p1);
+  for (int i = row; i < end; ++i) {
+    const vreal p2 = direction_at(c, s, min(i + 2, last), column);
+    const vreal a0 = acceleration(s, i, p0, p1, p2);
+    store(p + c.begin + i * (size_t)s.pitch + column, p0);
+    store(scratch + (i - row) * (size_t)s.pitch + column, a2 - 2 * a1 + a0);
+    a2 = a1;
+    a1 = a0;
+    p0 = p1;
+    p1 = p2;
+  }
+}
+
+// What the products of a chunk need, from its first row on.
+typedef struct {
+  global const real *scratch, *R;  // Delta'Delta p
+  global const real *weights, *p;
+  global real* product;
+  global const real *z_next, *p_next;  // what the next chunk begins with
+  int rows, pitch, depth;
+} chunk_t;
+
+// Rows of what the next chunk begins with, another matrix per panel, for add_product to fetch.
+INLINE global const real* fetched(const chunk_t c, int row, int column) {
+  const size_t at = row * (size_t)c.pitch;
+  const int panel = column / TILE_COLUMNS;
+  if (panel == 0) return c.z_next + at;
+  if (panel == 1) return c.p_next + at;
+  return (panel == 2 ? c.weights : c.product) + CHUNK * (size_t)c.pitch + at;
+}
+
+// q = W o p + scratch R for a tile; returns the sum of p q. `whole` as a constant: no row of the
+// tile lies past the end.
+INLINE vreal product_tile(const chunk_t c, int row, int column, const int width, const int whole) {
+  tile_t tile;
+  clear_tile(&tile, width);
+  add_product(&tile, c.scratch, c.pitch, c.R, c.pitch, c.depth, row, c.rows, column, width,
+              fetched(c, row, column));
+  vreal sum = 0;
+  size_t at = row * (size_t)c.pitch + column;
+#pragma unroll
+  for (int r = 0; r < TILE_ROWS; ++r, at += c.pitch)
+#pragma unroll
+    for (int v = 0; v < width; ++v)
+      if (whole || row + r < c.rows) {
+        const vreal p = load(c.p + at + v * VW);
+        const vreal q = fma(load(c.weights + at + v * VW), p, tile.at[r][v]);
+        store(c.product + at + v * VW, q);
+        sum = fma(p, q, sum);
+      }
+  return sum;
+}
+
+// The tiles of `width` vectors from `column` on, down the rows.
+INLINE vreal product_panel(const chunk_t c, int column, const int width) {
+  vreal sum = 0;
+  int row = 0;
+  for (; row + TILE_ROWS <= c.rows; row += TILE_ROWS) sum += product_tile(c, row, column, width, 1);
+  if (row < c.rows) sum += product_tile(c, row, column, width, 0);
+  return sum;
+}
+
+INLINE vreal product_rows(const chunk_t c) {
+  vreal sum = 0;
+  int column = 0;
+  for (; column + TILE_COLUMNS <= c.pitch; column += TILE_COLUMNS)
+    sum += product_panel(c, column, TILE_VECTORS);
+  for (; column < c.pitch; column += VW) sum += product_panel(c, column, 1);
+  return sum;
+}
+
+kernel void direction(global const segment_t* segments,  // [segments]
+                      global const block_t* blocks,      // [block_count]
+                      int block_count,
+                      global const real* weights,      // W, [rows x pitch] stacked
+                      global const real* R,            // order x order matrices
+                      global const real* z,            // [rows x pitch] stacked
+                      global const real* p_before,     // [rows x pitch] stacked
+                      global const double* rz,         // [segments x vectors of columns]
+                      global const double* rz_before,  // [segments x vectors of columns]
+                      global const double* bz,         // [segments x vectors of columns]
+                      double tolerance,                // negative: go on whatever r.z
+                      int begins,                      // beta = 0
+                      global real* scratch,            // [all blocks x CHUNK x pitch]
+                      global real* p,                  // [rows x pitch] stacked
+                      global real* product,            // q, [rows x pitch] stacked
+                      global double* partial_pq,       // [all blocks]
+                      global int* iterations) {        // [segments]
+  const int item = get_global_id(0);
+  if (item >= block_count) return;
+  const block_t block = blocks[item];
+  const segment_t s = segments[block.segment];
+  const stage_t stage = stage_of(rz, rz_before, bz, block.segment, s, tolerance, begins);
+  if (stage.enough) return;
+  if (tolerance >= 0 && block.block == 0) ++iterations[block.segment];
+  const search_t c = {z, p_before, stage.beta, s.first_row * s.pitch};
+  const int end = block_end(block, s);
+  global real* own = scratch + (s.first_block + block.block) * (size_t)(CHUNK * s.pitch);
+  vreal sum = 0;
+  for (int row = block_begin(block, s); row < end; row += CHUNK) {
+    const int chunk_end = min(row + CHUNK, end);
+    for (int column = 0; column < s.pitch; column += VW)
+      differences(c, s, row, chunk_end, column, p, own);
+    const size_t at = c.begin + row * (size_t)s.pitch;
+    const size_t next = at + CHUNK * (size_t)s.pitch;
+    const chunk_t chunk = {own,      R + s.square,    weights + at,    p + at,  product + at,
+                           z + next, p_before + next, chunk_end - row, s.pitch, s.order};
+    sum += product_rows(chunk);
+  }
+  partial_pq[s.first_block + block.block] = lane_sum(sum);
+}
