@@ -46,7 +46,10 @@ Json identity(const DeviceInfo& device) {
 }
 
 int choice(const Json& record, const char* name) {
-  const auto value = record.at(name).get<std::int64_t>();
+  const Json& number = record.at(name);
+  if (!number.is_number_integer())  // one beyond std::int64_t may not be converted
+    throw ArgumentError(fmt::format("tuning: {} is {}, not a whole number", name, number.dump()));
+  const auto value = number.get<std::int64_t>();
   if (value < 0 || value > std::numeric_limits<std::int32_t>::max())
     throw ArgumentError(fmt::format("tuning: {} is {}", name, value));
   return static_cast<int>(value);
