@@ -69,7 +69,7 @@ TEST_F(Denoise, RecordHoldsTheWholeRun) {
   EXPECT_EQ(record["precision"], "f64");
   EXPECT_THAT(keys(record["tuning"]),
               UnorderedElementsAre("tile_rows", "tile_vectors", "sweep_rows", "panel", "products",
-                                   "eigen", "batch_segments", "queues", "file"));
+                                   "eigen", "batch_segments", "queues", "work_group", "file"));
   EXPECT_EQ(record["version"], MOCLEAN_VERSION);
   EXPECT_THAT(record["device"].get<std::string>(), HasSubstr("opencl"));
   const nlohmann::json& method = record["method"];
