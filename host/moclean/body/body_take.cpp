@@ -44,4 +44,14 @@ double body_size(const BodyTake& take) {
   return distances.empty() ? 0 : median(distances);
 }
 
+std::vector<double> sampled_distances(const BodyTake& take, Index first, Index second) {
+  constexpr Index enough_frames = 400;
+  std::vector<double> found;
+  const Index step = std::max<Index>(1, take.frames() / enough_frames);
+  for (Index i = 0; i < take.frames(); i += step)
+    if (take.seen(i, first) && take.seen(i, second))
+      found.push_back((take.position(i, first) - take.position(i, second)).norm());
+  return found;
+}
+
 }  // namespace moclean

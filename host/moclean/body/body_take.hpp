@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "moclean/core/matrix.hpp"
 
 namespace moclean {
@@ -27,5 +29,9 @@ Index odd_frames(double seconds, double frame_rate, Index least = 3);
 /// Median over frames and joints of the distance of a joint from the frame's median joint (the
 /// median x, y and z of all): about 7 ASF units or half a metre of a person. 0 if nothing was seen.
 double body_size(const BodyTake& take);
+
+/// Distances of two joints in the frames in which both were seen: all frames of a short take, every
+/// so many that 400 to 800 are looked at of a longer one.
+std::vector<double> sampled_distances(const BodyTake& take, Index first, Index second);
 
 }  // namespace moclean

@@ -18,7 +18,6 @@ namespace {
 constexpr std::array<std::size_t, 3> neighbour_counts = {3, 5, 8};
 constexpr std::size_t most_trials = 12, fewest_trials = 3;
 constexpr Index frames_per_trial = 5;
-constexpr Index enough_frames = 400;  // to tell the deviation of a distance
 constexpr std::size_t fewest_distances = 20;
 constexpr double tail = 0.95, deviations_of_tail = 1.96;
 constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -53,11 +52,7 @@ class Spreads {
 
  private:
   double found(Index a, Index b) const {
-    std::vector<double> distances;
-    const Index step = std::max<Index>(1, take_.frames() / enough_frames);
-    for (Index i = 0; i < take_.frames(); i += step)
-      if (take_.seen(i, a) && take_.seen(i, b))
-        distances.push_back((take_.position(i, a) - take_.position(i, b)).norm());
+    std::vector<double> distances = sampled_distances(take_, a, b);
     if (distances.size() <= fewest_distances) return infinite;
     const double middle = median(distances);
     for (double& d : distances) d = std::abs(d - middle);

@@ -12,7 +12,7 @@ namespace {
 constexpr std::size_t partners = 6, fewest_values = 20;
 // Deviations of a normal distribution within which its central third lies.
 constexpr double deviations_of_third = 0.4307;
-constexpr Index enough_frames = 400, fewest_joints = 4;
+constexpr Index fewest_joints = 4;
 constexpr double cut = 5, broken = 0.4;            // deviations; share of frames off the centre
 constexpr double hard_edge = 3, exact_edge = 0.3;  // spread, in units of the smallest
 
@@ -21,19 +21,9 @@ struct Pair {
   bool steady = false;  // not a posture that is held for half of the take
 };
 
-// Distances of two joints in the frames that are looked at.
-std::vector<double> distances(const BodyTake& take, Index first, Index second) {
-  std::vector<double> found;
-  const Index step = std::max<Index>(1, take.frames() / enough_frames);
-  for (Index i = 0; i < take.frames(); i += step)
-    if (take.seen(i, first) && take.seen(i, second))
-      found.push_back((take.position(i, first) - take.position(i, second)).norm());
-  return found;
-}
-
 Pair look_at(const BodyTake& take, Index first, Index second, double smallest) {
   Pair pair{.edge = {.first = first, .second = second}};
-  std::vector<double> values = distances(take, first, second);
+  std::vector<double> values = sampled_distances(take, first, second);
   const Core core = steady_core(values);
   pair.edge.length = core.centre;
   pair.edge.spread = core.spread;
