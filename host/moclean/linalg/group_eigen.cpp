@@ -13,9 +13,8 @@ namespace {
 // LAPACK's limit; two sweeps per eigenvalue are usual.
 constexpr int max_sweeps = 30;
 
-Defines group_defines(const Device& device, int work_group, bool in_local) {
-  Defines defines = common_defines(device);
-  defines["WG"] = std::to_string(work_group);
+Defines form_defines(const Device& device, int work_group, bool in_local) {
+  Defines defines = group_defines(device, work_group);
   defines["MAX_SWEEPS"] = std::to_string(max_sweeps);
   defines["TRIANGLE_IN_LOCAL"] = std::to_string(in_local ? 1 : 0);
   return defines;
@@ -35,9 +34,9 @@ std::size_t rotation_reals(Index order) { return 6 * static_cast<std::size_t>(pa
 }  // namespace
 
 GroupEigen::Programs::Programs(const Device& device, int work_group)
-    : in_local(device, kernel_source::tridiagonal_group, group_defines(device, work_group, true)),
-      in_global(device, kernel_source::tridiagonal_group, group_defines(device, work_group, false)),
-      rotation(device, kernel_source::eigen_group, group_defines(device, work_group, true)),
+    : in_local(device, kernel_source::tridiagonal_group, form_defines(device, work_group, true)),
+      in_global(device, kernel_source::tridiagonal_group, form_defines(device, work_group, false)),
+      rotation(device, kernel_source::eigen_group, form_defines(device, work_group, true)),
       reduce_in_local(in_local, "group_tridiagonalise"),
       reduce_in_global(in_global, "group_tridiagonalise"),
       accumulate(rotation, "group_accumulate"),

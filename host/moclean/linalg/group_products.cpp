@@ -22,12 +22,6 @@ int checked(int work_group) {
   return work_group;
 }
 
-Defines tile_defines(const Device& device, int work_group) {
-  Defines defines = common_defines(device);
-  defines["WG"] = std::to_string(work_group);
-  return defines;
-}
-
 std::size_t tiles_over(Index size, Index tile) {
   return static_cast<std::size_t>((size + tile - 1) / tile);
 }
@@ -35,7 +29,7 @@ std::size_t tiles_over(Index size, Index tile) {
 }  // namespace
 
 GroupProducts::Programs::Programs(const Device& device, int work_group)
-    : program(device, kernel_source::products_group, tile_defines(device, work_group)),
+    : program(device, kernel_source::products_group, group_defines(device, work_group)),
       gram(program, "gram"),
       reconstruct(program, "reconstruct"),
       apply(program, "apply"),

@@ -3,10 +3,18 @@
 #include <algorithm>
 #include <bit>
 #include <optional>
+#include <string>
 
-#include "moclean/device/device.hpp"
+#include "moclean/linalg/batch.hpp"
 
 namespace moclean {
+
+/// -D options of kernels in work-groups: the common ones and WG.
+inline Defines group_defines(const Device& device, int work_group) {
+  Defines defines = common_defines(device);
+  defines["WG"] = std::to_string(work_group);
+  return defines;
+}
 
 /// Builds `programs` for the largest work-group of a power of two up to `wanted` work-items that
 /// the device can run all their kernels with, and returns it. `Programs(device, work_group)` builds

@@ -17,12 +17,6 @@ Defines tile_defines(const Device& device, const Tuning& tuning) {
   return defines;
 }
 
-Defines group_defines(const Device& device, int work_group) {
-  Defines defines = common_defines(device);
-  defines["WG"] = std::to_string(work_group);
-  return defines;
-}
-
 std::size_t partial_sums(const Device& device, const Batch& batch) {
   return static_cast<std::size_t>(batch.segments() * (batch.pitch() / vector_width(device)));
 }

@@ -9,15 +9,6 @@
 #include "moclean/solve/opencl/robust_pca_work.hpp"
 
 namespace moclean::opencl {
-namespace {
-
-Defines group_defines(const Device& device, int work_group) {
-  Defines defines = common_defines(device);
-  defines["WG"] = std::to_string(work_group);
-  return defines;
-}
-
-}  // namespace
 
 Defines sweep_defines(const Device& device, NumberType type, const Tuning& tuning) {
   Defines defines = product_defines(device, type, tuning);
