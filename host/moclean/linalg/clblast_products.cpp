@@ -1,5 +1,8 @@
 #include <map>
+#include <mutex>
+#include <string>
 #include <tuple>
+#include <unordered_map>
 #include <vector>
 
 #include <clblast.h>
@@ -40,6 +43,24 @@ struct Sizes {
   std::size_t m, n, k, left_pitch, right_pitch, result_pitch;
 };
 
+[[noreturn]] void fail(clblast::StatusCode status, const std::string& call, const Device& device) {
+  throw DeviceError(fmt::format("CLBlast failed in {} on {}: {}", call, device.info().name,
+                                opencl_status(static_cast<cl_int>(status))));
+}
+
+// CLBlast fills the table of its tuning parameters at the first call of a process, and does not
+// lock it (Database::Database, 1.5.3), but queues begin to multiply at the same time. This call
+// comes before all of theirs.
+void fill_parameter_table(const Device& device) {
+  static std::once_flag filled;
+  std::call_once(filled, [&] {
+    std::unordered_map<std::string, std::size_t> parameters;
+    const auto status = clblast::RetrieveParameters(device.handle()(), "Xgemm",
+                                                    clblast::Precision::kDouble, parameters);
+    if (status != clblast::StatusCode::kSuccess) fail(status, "its table of parameters", device);
+  });
+}
+
 void gemm(const Device& device, Transpose left_form, Transpose right_form, const Sizes& sizes,
           const Offsets& offsets, const Buffer<double>& left, const Buffer<double>& right,
           Buffer<double>& result) {
@@ -52,9 +73,7 @@ void gemm(const Device& device, Transpose left_form, Transpose right_form, const
       offsets.right.data(), sizes.right_pitch, zero.data(), result.memory()(),
       offsets.result.data(), sizes.result_pitch, count, &queue, nullptr);
   if (status != clblast::StatusCode::kSuccess)
-    throw DeviceError(fmt::format("CLBlast failed in a batched product {} x {} x {} on {}: {}",
-                                  sizes.m, sizes.n, sizes.k, device.info().name,
-                                  opencl_status(static_cast<cl_int>(status))));
+    fail(status, fmt::format("a batched product {} x {} x {}", sizes.m, sizes.n, sizes.k), device);
 }
 
 std::size_t stacked_offset(const SegmentRecord& segment) {
@@ -106,7 +125,9 @@ void square_product(const Device& device, const Batch& batch, Transpose form,
 ClblastProducts::ClblastProducts(const Device& device)
     : device_(&device),
       program_(device, kernel_source::scale_rows, common_defines(device)),
-      scale_rows_(program_, "scale_rows") {}
+      scale_rows_(program_, "scale_rows") {
+  fill_parameter_table(device);
+}
 
 void ClblastProducts::gram(const Batch& batch, const Buffer<double>& x, Buffer<double>& g, GramOf) {
   const auto groups = group_by_shape(batch, [](const SegmentRecord& s) {
