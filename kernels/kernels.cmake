@@ -14,6 +14,7 @@ function(moclean_embed_kernels target)
       DEPENDS ${source} ${moclean_included_kernels} ${PROJECT_SOURCE_DIR}/kernels/embed.cmake
       COMMENT "Embedding ${kernel}.cl"
       VERBATIM)
+    set_source_files_properties(${generated} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
     target_sources(${target} PRIVATE ${generated})
   endforeach()
 endfunction()

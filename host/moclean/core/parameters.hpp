@@ -120,7 +120,8 @@ template <class Variant, class Read>
 std::optional<Variant> find_alternative(const Specification& specification, const Read& read) {
   std::optional<Variant> found;
   [&]<class... T>(std::type_identity<std::variant<T...>>) {
-    ((specification.name() == T::name && (found = read(specification, T{}), true)) || ...);
+    static_cast<void>(
+        ((specification.name() == T::name && (found = read(specification, T{}), true)) || ...));
   }(std::type_identity<Variant>());
   return found;
 }

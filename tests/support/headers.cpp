@@ -1,0 +1,1 @@
+// Holds nothing: the headers that the test programs share are compiled with this file.
