@@ -92,13 +92,14 @@ class Solver {
 
   std::vector<Denoised> solve(const TakeGroup& group, Index expected_segments, bool is_last) {
     const BusyClock::Work work(clock_);
-    const Monitor monitor{
-        .report =
-            [&](const Progress& own) {
-              line_.show({.finished = finished_ + own.finished, .total = expected_segments},
-                         is_last ? ProgressTotal::exact : ProgressTotal::estimated);
-            },
-        .stop = stop_};
+    const Monitor monitor{.report =
+                              [&](const Progress& own) {
+                                line_.show(
+                                    {.finished = finished_ + own.finished,
+                                     .total = std::max(expected_segments, finished_ + own.total)},
+                                    is_last ? ProgressTotal::exact : ProgressTotal::estimated);
+                              },
+                          .stop = stop_};
     auto results = denoiser_.denoise(group.clips, monitor);
     require_going(stop_);
     finished_ += group.segments;

@@ -1,8 +1,9 @@
 #include <cmath>
 #include <limits>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
+#include "moclean/body/cuts.hpp"
 #include "moclean/body/jump_flags.hpp"
 #include "moclean/body/rigid_flags.hpp"
 
@@ -23,6 +24,16 @@ struct Learned {
         body(learn_rigid_body(take, smallest)) {}
 
   RigidFlags flags() const { return judge(take, body, size, smallest); }
+  Mask jumps(const Mask& trusted) const {
+    return jump_flags(take, sudden_steps(take, trusted, size), body);
+  }
+  Mask trusted() const {
+    const RigidFlags found = flags();
+    return found.consistent && !found.bad;
+  }
+  std::vector<Index> cut() const {
+    return cuts(trusted(), sudden_steps(take, trusted(), size), body, jumps(trusted()));
+  }
 
   BodyTake take;
   double size, smallest;
@@ -116,7 +127,7 @@ TEST(JumpFlags, FindALimbThatLeavesAsAWholeAndComesBack) {
   const Learned learned(samples);
   const Mask all = Mask::Constant(frames, joints, true);
 
-  const Mask jumps = jump_flags(learned.take, all, learned.body, learned.size);
+  const Mask jumps = learned.jumps(all);
 
   for (const Index j : {3, 7, 8}) EXPECT_TRUE(jumps.col(j).segment(200, 50).all()) << j;
   EXPECT_EQ(jumps.count(), 150);
@@ -126,7 +137,54 @@ TEST(JumpFlags, AreNotRaisedByMotion) {
   const Learned learned(test::swinging_limbs(frames, joints));
   const Mask all = Mask::Constant(frames, joints, true);
 
-  EXPECT_FALSE(jump_flags(learned.take, all, learned.body, learned.size).any());
+  EXPECT_FALSE(learned.jumps(all).any());
+}
+
+TEST(JumpFlags, DoNotCountWhatIsForgotten) {
+  Matrix samples = test::swinging_limbs(frames, joints);
+  for (const Index j : {3, 7, 8})
+    samples.middleRows(200, 50).middleCols(3 * j, 3).rowwise() += Eigen::RowVector3d(2, 1, -1.5);
+  const Learned learned(samples);
+  std::vector<SuddenSteps> steps = sudden_steps(learned.take, learned.trusted(), learned.size);
+
+  forget_steps_into(200, steps);
+
+  EXPECT_FALSE(jump_flags(learned.take, steps, learned.body).any());
+}
+
+// The body in two motions: the first `at` frames of another one, then frames of its own.
+Matrix joined(Index at) {
+  Matrix samples = test::swinging_limbs(frames, joints);
+  samples.topRows(at) = test::swinging_limbs(frames, joints, 2).topRows(at);
+  return samples;
+}
+
+TEST(Cuts, AreWhereAnotherMotionBegins) {
+  for (const Index at : {1, 150, 399})  // 1: a pose before the motion
+    EXPECT_THAT(Learned(joined(at)).cut(), testing::ElementsAre(at));
+}
+
+TEST(Cuts, AreNotInOneMotion) {
+  for (const Index length : {Index{2}, frames})
+    EXPECT_THAT(Learned(test::swinging_limbs(length, joints)).cut(), testing::IsEmpty());
+}
+
+TEST(Cuts, LieBeforeASpoiltFrame) {
+  Matrix samples = joined(150);
+  for (Index j = 0; j < joints; ++j)
+    samples.row(150).segment<3>(3 * j) += Eigen::RowVector3d(1, -1.5, 0.7) * (1 + j % 4);
+
+  EXPECT_THAT(Learned(samples).cut(), testing::ElementsAre(150));
+}
+
+TEST(Cuts, AreNotMadeByWrongSamples) {
+  Matrix samples = test::swinging_limbs(frames, joints);
+  for (Index j = 0; j < joints; ++j)  // a first frame without a right length
+    samples.row(0).segment<3>(3 * j).array() += 1 + 0.5 * static_cast<double>(j);
+  for (const Index j : {3, 7, 8})  // a third of the body leaves and comes back
+    samples.middleRows(200, 50).middleCols(3 * j, 3).rowwise() += Eigen::RowVector3d(2, 1, -1.5);
+
+  EXPECT_THAT(Learned(samples).cut(), testing::IsEmpty());
 }
 
 }  // namespace

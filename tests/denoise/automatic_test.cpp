@@ -106,6 +106,20 @@ TEST(Automatic, NeighboursCarryAMarkerThroughALongGap) {
   EXPECT_LE(gap_of(*result.sigma).norm(), 0.5 * gap_of(*blind.sigma).norm());
 }
 
+TEST(Automatic, LeavesAPoseBeforeTheMotionAlone) {
+  const Clip motion = with_bursts(limbs(300), 30);
+  Clip take = motion;
+  take.samples.resize(301, Eigen::NoChange);
+  take.samples << test::swinging_limbs(1, 8, 2), motion.samples;
+
+  const Denoised result = cleaned(take);
+
+  EXPECT_EQ(result.segments.size(), 2);
+  EXPECT_TRUE(result.clip.samples.row(0) == take.samples.row(0));
+  const Matrix alone = cleaned(motion).clip.samples;
+  EXPECT_LE((result.clip.samples.bottomRows(300) - alone).norm(), 0.02);
+}
+
 TEST(Automatic, LeavesNoJointMissingThatWasSeen) {
   // Out of place in all of the second window, frames 95 to 205: flags would leave nothing of it.
   Clip noisy = limbs(400);

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "moclean/body/carried.hpp"
+#include "moclean/body/cuts.hpp"
 #include "moclean/body/jump_flags.hpp"
 #include "moclean/body/rigid_flags.hpp"
 #include "moclean/body/vanished.hpp"
@@ -52,6 +53,19 @@ void drop(const Mask& joints, Matrix& samples) {
       if (joints(i, j)) samples.row(i).segment<3>(3 * j).setConstant(missing);
 }
 
+// The windows of a take in which other motions begin at the frames `cuts`.
+Spans windows(const Automatic& method, Index frames, std::vector<Index> cuts) {
+  Spans all;
+  Index first = 0;
+  cuts.push_back(frames);
+  for (const Index last : cuts) {
+    for (const Span& span : overlapping_spans(plan(method, last - first), method.overlap))
+      all.push_back({first + span.first, first + span.last});
+    first = last;
+  }
+  return all;
+}
+
 // Takes flags back where a window would be left with hardly a sample of a joint: rather wrong than
 // nothing to go by.
 void spare_hopeless(const Mask& seen, const Spans& spans, Mask& bad) {
@@ -65,8 +79,8 @@ void spare_hopeless(const Mask& seen, const Spans& spans, Mask& bad) {
     }
 }
 
-// Takes out what the body says is wrong.
-void look_at_body(double frame_rate, Prepared& prepared) {
+// Takes out what the body says is wrong, and cuts where another motion begins.
+void look_at_body(double frame_rate, const Automatic& method, Prepared& prepared) {
   const BodyTake first = body_take(prepared.samples, frame_rate);
   drop(vanished(first), prepared.samples);
   BodyTake take = body_take(prepared.samples, frame_rate);
@@ -82,7 +96,11 @@ void look_at_body(double frame_rate, Prepared& prepared) {
   RigidFlags flags = judge(take, body, known.size, smallest);
   if (body.is_rigid()) {
     const Mask trusted = flags.consistent && !flags.bad && take.seen;
-    flags.bad = flags.bad || jump_flags(take, trusted, body, known.size);
+    std::vector<SuddenSteps> steps = sudden_steps(take, trusted, known.size);
+    const auto found = cuts(trusted, steps, body, jump_flags(take, steps, body));
+    for (const Index frame : found) forget_steps_into(frame, steps);
+    prepared.spans = windows(method, take.frames(), found);
+    flags.bad = flags.bad || jump_flags(take, steps, body);
   }
   spare_hopeless(take.seen, prepared.spans, flags.bad);
   drop(flags.bad, prepared.samples);
@@ -96,8 +114,8 @@ void look_at_body(double frame_rate, Prepared& prepared) {
 
 Prepared prepare(const Clip& take, const Automatic& method) {
   Prepared prepared{.samples = take.samples, .knowledge = {}, .spans = {}};
-  prepared.spans = overlapping_spans(plan(method, take.frames()), method.overlap);
-  if (method.body == BodyRules::on && has_body(take)) look_at_body(rate_of(take), prepared);
+  prepared.spans = windows(method, take.frames(), {});
+  if (method.body == BodyRules::on && has_body(take)) look_at_body(rate_of(take), method, prepared);
   return prepared;
 }
 

@@ -16,8 +16,9 @@ enum class BodyRules { on, off };
 /// overlapping windows, told by the distances between joints which samples are wrong. Works on any
 /// columns; where all come in joints of three, the body's rules apply (moclean/body):
 ///   joints at the origin are missing (vanished), joints at wrong distances are rejected before
-///   anything is fitted (rigid_flags), limbs that jump away and back are (jump_flags), and exact
-///   distances hold in gaps. Soft marker sets have no constant distances, and no such rules.
+///   anything is fitted (rigid_flags), limbs that jump away and back are (jump_flags), exact
+///   distances hold in gaps, and a take is cut where another motion begins (cuts): no window
+///   reaches across. Soft marker sets have no constant distances, and no such rules.
 /// Times are in seconds where it matters: rates of 25 to 250 Hz.
 struct Automatic {
   Index window = 2000;  ///< frames; longer takes are divided equally into about so many, at least 8
@@ -35,7 +36,7 @@ struct Automatic {
   }
 };
 
-/// The windows of a take before they overlap.
+/// The windows of a take without cuts, before they overlap.
 SegmentPlan plan(const Automatic& method, Index frames);
 
 /// Throws ArgumentError naming the first parameter out of its range.
