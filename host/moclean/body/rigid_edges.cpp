@@ -13,13 +13,29 @@ constexpr std::size_t partners = 6, fewest_values = 20;
 // Deviations of a normal distribution within which its central third lies.
 constexpr double deviations_of_third = 0.4307;
 constexpr Index fewest_joints = 4;
-constexpr double cut = 5, broken = 0.4;            // deviations; share of frames off the centre
+constexpr double cut = 5, broken = 0.4;  // deviations; share of frames off the centre
+constexpr double bent_share = 0.05, one_sided = 0.1, gradual = 0.5, slight = 4;
+constexpr int enough_hard = 2;
 constexpr double hard_edge = 3, exact_edge = 0.3;  // spread, in units of the smallest
 
 struct Pair {
   RigidEdge edge;
+  bool bends = false;   // see bends()
   bool steady = false;  // not a posture that is held for half of the take
 };
+
+// Whether sorted distances pile up at the length of a straightened limb: hip and ankle of one who
+// stands. Bending takes them below it, gradually and never above, whatever the third there shows.
+bool bends(const std::vector<double>& sorted, double centre, double limit) {
+  const auto below = [&](double d) {
+    return static_cast<double>(std::ranges::lower_bound(sorted, d) - sorted.begin());
+  };
+  const double shorter = below(centre - limit);
+  const double longer = static_cast<double>(sorted.size()) - below(centre + limit);
+  const double slightly = shorter - below(centre - slight * limit);
+  return shorter > bent_share * static_cast<double>(sorted.size()) &&
+         longer < one_sided * shorter && slightly > gradual * shorter;
+}
 
 Pair look_at(const BodyTake& take, Index first, Index second, double smallest) {
   Pair pair{.edge = {.first = first, .second = second}};
@@ -31,10 +47,11 @@ Pair look_at(const BodyTake& take, Index first, Index second, double smallest) {
   const double limit = cut * std::max(core.spread, smallest);
   const auto off =
       std::ranges::count_if(values, [&](double d) { return std::abs(d - core.centre) > limit; });
-  const bool exact = core.spread < exact_edge * smallest;  // may be off: a burst in a short take
-  pair.steady = exact || static_cast<double>(off) <= broken * static_cast<double>(values.size());
+  pair.bends = bends(values, core.centre, limit);
+  pair.edge.exact = core.spread < exact_edge * smallest;  // may be off: a burst in a short take
+  pair.steady =
+      pair.edge.exact || static_cast<double>(off) <= broken * static_cast<double>(values.size());
   pair.edge.hard = pair.steady && core.spread < hard_edge * smallest;
-  pair.edge.exact = exact;
   return pair;
 }
 
@@ -51,6 +68,32 @@ std::vector<double> partner_bounds(const std::vector<Pair>& pairs, Index joints)
     bounds.push_back(own[place]);
   }
   return bounds;
+}
+
+// Takes pairs that bend for rigid only where a joint has fewer than two others that are.
+void soften_bending(std::vector<Pair>& pairs, Index joints) {
+  std::vector<int> hard(static_cast<std::size_t>(joints), 0);
+  for (const Pair& pair : pairs)
+    if (pair.edge.hard && !pair.bends)
+      for (const Index j : {pair.edge.first, pair.edge.second}) ++hard[static_cast<std::size_t>(j)];
+  const auto has_enough = [&](Index j) { return hard[static_cast<std::size_t>(j)] >= enough_hard; };
+  for (Pair& pair : pairs)
+    if (pair.bends && has_enough(pair.edge.first) && has_enough(pair.edge.second))
+      pair.steady = pair.edge.hard = pair.edge.exact = false;
+}
+
+// Joints at one place, a BVH file has many, say the same of any other: together as much as one.
+void share_places(std::vector<Pair>& pairs, Index joints, double smallest) {
+  const auto apart = [&](const Pair& pair) { return pair.edge.length >= cut * smallest; };
+  std::vector<double> at_place(static_cast<std::size_t>(joints), 1);
+  for (const Pair& pair : pairs)
+    if (pair.edge.hard && !apart(pair))
+      for (const Index j : {pair.edge.first, pair.edge.second})
+        ++at_place[static_cast<std::size_t>(j)];
+  for (Pair& pair : pairs)
+    if (apart(pair))
+      pair.edge.share = 1 / (at_place[static_cast<std::size_t>(pair.edge.first)] *
+                             at_place[static_cast<std::size_t>(pair.edge.second)]);
 }
 
 }  // namespace
@@ -77,6 +120,8 @@ RigidBody learn_rigid_body(const BodyTake& take, double smallest) {
   std::vector<Pair> pairs;
   for (Index a = 0; a < take.joints(); ++a)
     for (Index b = a + 1; b < take.joints(); ++b) pairs.push_back(look_at(take, a, b, smallest));
+  soften_bending(pairs, take.joints());
+  share_places(pairs, take.joints(), smallest);
   const std::vector<double> bounds = partner_bounds(pairs, take.joints());
   std::erase_if(pairs, [&](const Pair& pair) {
     const RigidEdge& e = pair.edge;

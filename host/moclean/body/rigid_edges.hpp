@@ -12,13 +12,16 @@ struct RigidEdge {
   Index second = 0;
   double length = 0;   ///< centre of the distances
   double spread = 0;   ///< their deviation, of the steadiest third
+  double share = 1;    ///< one over the edges that say the same, of joints at the same places
   bool hard = false;   ///< rigid: the spread is that of the measurement
   bool exact = false;  ///< a length to build on: the spread is far below that
 };
 
 /// The skeleton that a take shows by itself: distances that stay, learned from the shortest
 /// interval that holds a third of each pair's distances: two neighbours that drift may be wrong for
-/// more than half of the take together.
+/// more than half of the take together. Ends of a limb that is straight for that long look rigid,
+/// too, but their distances fall short of it gradually and never exceed it: such a pair does not
+/// count where both joints have two other rigid ones.
 struct RigidBody {
   std::vector<RigidEdge> edges;  ///< among the six steadiest of either joint
   std::vector<bool> judged;      ///< [joints]: has a hard edge, so its errors show as wrong lengths

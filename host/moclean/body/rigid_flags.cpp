@@ -12,6 +12,7 @@ namespace moclean {
 namespace {
 
 constexpr double cut = 5, vote = 0.4;
+constexpr double weight_of_exact = 1.6;  // alone against a single other one it is not outvoted
 constexpr double slow_seconds = 0.092, dense = 2e-3, least_spread = 1e-4;  // the last two: of size
 constexpr double hole_share = 0.6;
 
@@ -26,9 +27,9 @@ Distances distances(const BodyTake& take, std::span<const RigidEdge> edges) {
   Distances d{Matrix(take.frames(), count), Mask(take.frames(), count)};
   for (Index i = 0; i < take.frames(); ++i)
     for (Index e = 0; e < count; ++e) {
-      const auto& [first, second, length, spread, hard, exact] = edges[static_cast<std::size_t>(e)];
-      d.both(i, e) = take.seen(i, first) && take.seen(i, second);
-      d.values(i, e) = (take.position(i, first) - take.position(i, second)).norm();
+      const RigidEdge& edge = edges[static_cast<std::size_t>(e)];
+      d.both(i, e) = take.seen(i, edge.first) && take.seen(i, edge.second);
+      d.values(i, e) = (take.position(i, edge.first) - take.position(i, edge.second)).norm();
     }
   return d;
 }
@@ -105,7 +106,10 @@ class Votes {
 };
 
 void blame_all(const RigidBody& body, const Distances& d, const Limits& limits, Mask& bad) {
-  const Row weight = limits.limit.square().inverse();
+  Row weight = limits.limit.square().inverse();
+  for (std::size_t e = 0; e < body.edges.size(); ++e)
+    weight(static_cast<Index>(e)) *=
+        body.edges[e].share * (body.edges[e].exact ? weight_of_exact : 1);
   Votes votes(body);
   Marks off(weight.size());
   for (Index i = 0; i < d.values.rows(); ++i) {
