@@ -14,7 +14,7 @@ namespace {
 constexpr double cut = 5, vote = 0.4;
 constexpr double weight_of_exact = 1.6;  // alone against a single other one it is not outvoted
 constexpr double slow_seconds = 0.092, dense = 2e-3, least_spread = 1e-4;  // the last two: of size
-constexpr double hole_share = 0.6;
+constexpr double hole_share = 0.6, spared_share = 0.9, spared_seconds = 0.04;
 
 // Distances of the edges, [frames x edges], and where both ends were seen.
 struct Distances {
@@ -36,6 +36,7 @@ Distances distances(const BodyTake& take, std::span<const RigidEdge> edges) {
 
 using Row = Eigen::Array<double, 1, Eigen::Dynamic>;
 using Marks = Eigen::Array<bool, 1, Eigen::Dynamic>;
+using Column = Eigen::Array<bool, Eigen::Dynamic, 1>;
 
 // Centres and limits to compare distances with, one per edge.
 struct Limits {
@@ -151,6 +152,41 @@ void close_holes(const BodyTake& take, Mask& bad) {
     }
 }
 
+// Takes back flags that an exact distance to a joint without blame speaks against as long as they
+// last: a joint that was moved keeps a distance by coincidence, for a frame or so; one that turned
+// about the other keeps it. Returns the samples that were spared, [frames x joints].
+Mask spare(const RigidBody& body, const Distances& d, const Limits& limits, Index shortest,
+           Mask& bad) {
+  const Mask blamed = bad;
+  Mask spared = Mask::Constant(bad.rows(), bad.cols(), false);
+  for (std::size_t e = 0; e < body.edges.size(); ++e) {
+    const RigidEdge& edge = body.edges[e];
+    if (!edge.exact) continue;
+    const auto k = static_cast<Index>(e);
+    const Column right =
+        d.both.col(k) && (d.values.col(k).array() - limits.centre(k)).abs() <= limits.limit(k);
+    for (const auto& [joint, other] :
+         {std::pair(edge.first, edge.second), std::pair(edge.second, edge.first)}) {
+      const Column witnessed = d.both.col(k) && !blamed.col(other), kept = witnessed && right;
+      for (Index first = 0, last = 0; first < bad.rows(); first = last) {
+        last = first + 1;
+        if (!blamed(first, joint)) continue;
+        while (last < bad.rows() && blamed(last, joint)) ++last;
+        const auto run = kept.segment(first, last - first);
+        const Index seen = witnessed.segment(first, last - first).count();
+        if (seen < shortest ||
+            static_cast<double>(run.count()) < spared_share * static_cast<double>(seen))
+          continue;
+        auto flags = bad.col(joint).segment(first, last - first);
+        flags = flags && !run;
+        spared.col(joint).segment(first, last - first) =
+            spared.col(joint).segment(first, last - first) || run;
+      }
+    }
+  }
+  return spared;
+}
+
 void vouch(const RigidBody& body, const Distances& d, const Limits& limits, RigidFlags& flags) {
   const std::size_t joints = body.judged.size();
   std::vector<int> degree(joints, 0), right(joints);
@@ -201,7 +237,10 @@ RigidFlags judge(const BodyTake& take, const RigidBody& body, double size, doubl
     blame_all(body, slow, slow_limits, flags.bad);
   }
   close_holes(take, flags.bad);
+  const Mask spared =
+      spare(body, d, limits, odd_frames(spared_seconds, take.frame_rate), flags.bad);
   vouch(body, d, limits, flags);
+  flags.vouched = flags.vouched || spared;
   return flags;
 }
 

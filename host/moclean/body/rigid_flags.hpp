@@ -7,7 +7,8 @@ namespace moclean {
 /// What the distances between joints say of every joint in every frame, [frames x joints].
 struct RigidFlags {
   Mask bad;         ///< wrong: to blame for distances that are off
-  Mask vouched;     ///< right: two rigid distances or more say so, and none the contrary
+  Mask vouched;     ///< right: two rigid distances or more say so and none the contrary, or as
+                    ///< judge() takes flags back
   Mask consistent;  ///< as vouched, but one distance is enough where a joint has no more
 };
 
@@ -16,8 +17,10 @@ struct RigidFlags {
 /// that share exceeds 0.4: a knee has two exact distances of equal weight, one of which may be
 /// right by coincidence. An exact distance counts 1.6 times: alone it is not outvoted by another
 /// one, such as that of a limb that is straight for most of a take. Where dense noise hides small
-/// errors, lasting ones are looked for in running medians of the distances, too. `size` is
-/// body_size(take).
+/// errors, lasting ones are looked for in running medians of the distances, too.
+///
+/// Flags that last for 0.04 s or more are taken back where one exact distance to a joint without
+/// blame holds all the while: the joint has turned about the other. `size` is body_size(take).
 RigidFlags judge(const BodyTake& take, const RigidBody& body, double size, double smallest);
 
 }  // namespace moclean
