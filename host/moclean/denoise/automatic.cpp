@@ -97,10 +97,13 @@ void look_at_body(double frame_rate, const Automatic& method, Prepared& prepared
   if (body.is_rigid()) {
     const Mask trusted = flags.consistent && !flags.bad && take.seen;
     std::vector<SuddenSteps> steps = sudden_steps(take, trusted, known.size);
-    const auto found = cuts(trusted, steps, body, jump_flags(take, steps, body));
-    for (const Index frame : found) forget_steps_into(frame, steps);
-    prepared.spans = windows(method, take.frames(), found);
-    flags.bad = flags.bad || jump_flags(take, steps, body);
+    Mask jumps = jump_flags(take, steps, body);
+    if (const auto found = cuts(trusted, steps, body, jumps); !found.empty()) {
+      for (const Index frame : found) forget_steps_into(frame, steps);
+      jumps = jump_flags(take, steps, body);
+      prepared.spans = windows(method, take.frames(), found);
+    }
+    flags.bad = flags.bad || jumps;
   }
   spare_hopeless(take.seen, prepared.spans, flags.bad);
   drop(flags.bad, prepared.samples);
