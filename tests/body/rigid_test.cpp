@@ -49,21 +49,31 @@ Matrix displaced(Index joint, Index first, Index last, const Eigen::RowVector3d&
 }
 
 TEST(SteadyCore, IsTheShortestIntervalThatHoldsAThird) {
-  std::vector<double> values;
-  for (int i = 0; i < 15; ++i) values.push_back(5 + 0.01 * i);
-  for (int i = 0; i < 15; ++i) values.push_back(20 + 3. * i);
+  std::vector<WeighedDistance> values;
+  for (int i = 0; i < 15; ++i) values.push_back({5 + 0.01 * i});
+  for (int i = 0; i < 15; ++i) values.push_back({20 + 3. * i});
 
   const Core core = steady_core(values);
 
   EXPECT_GE(core.centre, 5.05 - 1e-9);  // ten steps of 0.01 within 5 .. 5.14
   EXPECT_LE(core.centre, 5.09 + 1e-9);
-  EXPECT_NEAR(core.spread, 0.05 / 0.4307, 1e-9);
+  EXPECT_NEAR(core.spread, 0.045 / 0.4307, 1e-9);  // the ten values themselves: 0.09 wide
 }
 
 TEST(SteadyCore, KnowsNothingFromTwentyValues) {
-  std::vector<double> values(20, 1.);
+  std::vector<WeighedDistance> values(20, {1.});
 
   EXPECT_TRUE(std::isinf(steady_core(values).spread));
+}
+
+TEST(SteadyCore, CountsByWeight) {
+  // Forty alike that hardly count, and twenty others: a third of the weight is among those.
+  std::vector<WeighedDistance> values(40, {1., 0.1});
+  for (int i = 0; i < 20; ++i) values.push_back({7 + 0.01 * i, 1.});
+
+  const Core core = steady_core(values);
+
+  EXPECT_GT(core.centre, 7);
 }
 
 TEST(RigidBody, FindsTheBones) {
@@ -171,6 +181,70 @@ TEST(RigidFlags, FindAThumbThatIsNotWhereItsBoneIs) {
 
   EXPECT_TRUE(bad.col(11).segment(200, 40).all());
   EXPECT_EQ(bad.count(), 40);
+}
+
+// Noise of 2 % of a bone, and joint 8, the end of a chain, that hangs on joint 3 alone.
+Matrix noisy(Matrix samples, double deviation) {
+  Random random(11);
+  for (double& x : samples.reshaped()) x += deviation * random.normal();
+  return samples;
+}
+
+Learned learned_of_noisy(const Matrix& samples, double deviation) {
+  Learned learned(samples);
+  learned.smallest = 1.4 * deviation;
+  learned.body = learn_rigid_body(learned.take, learned.smallest);
+  return learned;
+}
+
+TEST(RigidBody, IsNotLearnedFromStandingStill) {
+  // Half of the take one posture, with noise; only bones hold their length in the other half.
+  Matrix samples = test::swinging_limbs(frames, joints);
+  for (Index i = 0; i < frames / 2; ++i) samples.row(i) = samples.row(frames / 2);
+  const Learned learned = learned_of_noisy(noisy(samples, 0.01), 0.01);
+
+  for (const RigidEdge& edge : learned.body.edges)
+    if (edge.hard) EXPECT_EQ(edge.first, (edge.second - 1) / 2);
+  EXPECT_FALSE(learned.flags().bad.any());
+}
+
+TEST(RigidFlags, VouchForAJointWhoseBonesHoldHoweverItMoves) {
+  // Joint 8 flips about joint 3 in one frame; the bone keeps its length.
+  Matrix samples = test::swinging_limbs(frames, joints);
+  const Eigen::RowVector3d pivot = samples.row(200).segment<3>(9);
+  samples.row(200).segment<3>(24) = 2 * pivot - samples.row(200).segment<3>(24);
+  const RigidFlags flags = Learned(samples).flags();
+
+  EXPECT_TRUE(flags.vouched(200, 8));
+  EXPECT_TRUE(flags.vouched.all());
+}
+
+TEST(RigidFlags, VouchForNobodyInAFrameThatIsMostlyWrong) {
+  // All joints but two are displaced, each another way: the bone of those two still holds.
+  Matrix samples = test::swinging_limbs(frames, joints);
+  for (Index j = 0; j < joints - 2; ++j)
+    samples.row(200).segment<3>(3 * j) += Eigen::RowVector3d(1, -1.5, 0.7) * (1 + j % 4);
+  samples.row(200).segment<3>(21) = samples.row(200).segment<3>(9);
+  samples.row(200).segment<3>(21).x() += 1.7;  // joint 7 hangs on joint 3 by 1 + 0.1 * 7
+  const RigidFlags flags = Learned(samples).flags();
+
+  EXPECT_FALSE(flags.vouched.row(200).any());
+}
+
+TEST(RigidFlags, NeedAJumpWhereNoDistanceIsExact) {
+  // Joint 7 leaves along a slow curve and comes back: with noise no distance is exact.
+  Matrix slow = test::swinging_limbs(frames, joints), sudden = slow;
+  for (Index i = 150; i < 250; ++i) {
+    const double shift = 0.3 * (1 - std::cos(2 * M_PI * static_cast<double>(i - 150) / 100));
+    slow.row(i).segment<3>(21) += Eigen::RowVector3d(shift, shift, -shift);
+    sudden.row(i).segment<3>(21) += Eigen::RowVector3d(0.6, 0.6, -0.6);
+  }
+
+  const Mask gradual = learned_of_noisy(noisy(slow, 0.01), 0.01).flags().bad;
+  const Mask jumping = learned_of_noisy(noisy(sudden, 0.01), 0.01).flags().bad;
+
+  EXPECT_LT(gradual.count(), 5);
+  EXPECT_GE(jumping.col(7).segment(150, 100).count(), 95);
 }
 
 TEST(RigidFlags, SayNothingOfMissingJoints) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "moclean/core/order_statistics.hpp"
 
@@ -16,6 +17,9 @@ constexpr Index fewest_joints = 4;
 constexpr double cut = 5, broken = 0.4;  // deviations; share of frames off the centre
 constexpr double bent_share = 0.05, one_sided = 0.1, gradual = 0.5, slight = 4;
 constexpr int enough_hard = 2;
+constexpr Index enough_frames = 400;
+constexpr double turn_seconds = 0.125, enough_turn = 0.2;  // radians
+constexpr double noise_of_turn = 3, weight_at_rest = 0.3;
 constexpr double hard_edge = 3, exact_edge = 0.3;  // spread, in units of the smallest
 
 struct Pair {
@@ -24,33 +28,71 @@ struct Pair {
   bool steady = false;  // not a posture that is held for half of the take
 };
 
-// Whether sorted distances pile up at the length of a straightened limb: hip and ankle of one who
-// stands. Bending takes them below it, gradually and never above, whatever the third there shows.
-bool bends(const std::vector<double>& sorted, double centre, double limit) {
-  const auto below = [&](double d) {
-    return static_cast<double>(std::ranges::lower_bound(sorted, d) - sorted.begin());
-  };
-  const double shorter = below(centre - limit);
-  const double longer = static_cast<double>(sorted.size()) - below(centre + limit);
-  const double slightly = shorter - below(centre - slight * limit);
-  return shorter > bent_share * static_cast<double>(sorted.size()) &&
-         longer < one_sided * shorter && slightly > gradual * shorter;
+// Distances that are looked at. A pair proves rigid by keeping its distance while it turns: a frame
+// counts by how far the pair turns about it, so that a posture held for half of the take is no bone.
+// A sample that is wrong for longer than that gives no weight to itself, but to those around it.
+std::vector<WeighedDistance> weighed_distances(const BodyTake& take, Index first, Index second,
+                                               double smallest) {
+  const Index step = std::max<Index>(1, take.frames() / enough_frames);
+  const Index around = std::max<Index>(1, std::lround(turn_seconds * take.frame_rate));
+  const auto way = [&](Index i) { return take.position(i, first) - take.position(i, second); };
+  const auto both = [&](Index i) { return take.seen(i, first) && take.seen(i, second); };
+  std::vector<WeighedDistance> found;
+  for (Index i = 0; i < take.frames(); i += step) {
+    if (!both(i)) continue;
+    const Index before = std::max<Index>(i - around, 0);
+    const Index after = std::min(i + around, take.frames() - 1);
+    const double length = way(i).norm();
+    double turn = 0;
+    if (both(before) && both(after))
+      turn = (way(after) - way(before)).norm() - noise_of_turn * smallest;
+    const double most = enough_turn * length + std::numeric_limits<double>::min();
+    found.push_back({length, weight_at_rest + std::clamp(turn / most, 0., 1.)});
+  }
+  return found;
 }
 
+double weight_of(std::span<const WeighedDistance> distances) {
+  double sum = 0;
+  for (const WeighedDistance& d : distances) sum += d.weight;
+  return sum;
+}
+
+// Whether sorted distances pile up at the length of a straightened limb: hip and ankle of one who
+// stands. Bending takes them below it, gradually and never above, whatever the third there shows.
+bool bends(std::span<const WeighedDistance> sorted, double centre, double limit) {
+  const auto below = [&](double d) {
+    const auto end = std::ranges::lower_bound(sorted, d, {}, &WeighedDistance::value);
+    return weight_of({sorted.begin(), end});
+  };
+  const double all = weight_of(sorted), shorter = below(centre - limit);
+  const double longer = all - below(centre + limit);
+  const double slightly = shorter - below(centre - slight * limit);
+  return shorter > bent_share * all && longer < one_sided * shorter &&
+         slightly > gradual * shorter;
+}
+
+// By all frames alike, and where that is not beyond doubt by how far the pair turns about them.
 Pair look_at(const BodyTake& take, Index first, Index second, double smallest) {
   Pair pair{.edge = {.first = first, .second = second}};
-  std::vector<double> values = sampled_distances(take, first, second);
-  const Core core = steady_core(values);
+  std::vector<WeighedDistance> turning = weighed_distances(take, first, second, smallest);
+  std::vector<WeighedDistance> distances = turning;
+  for (WeighedDistance& d : distances) d.weight = 1;
+  Core core = steady_core(distances);
+  pair.edge.exact = core.spread < exact_edge * smallest;  // may be off: a burst in a short take
+  if (!pair.edge.exact && core.spread < hard_edge * smallest) {
+    core = steady_core(turning);
+    distances = std::move(turning);
+  }
   pair.edge.length = core.centre;
   pair.edge.spread = core.spread;
   if (!std::isfinite(core.spread)) return pair;
   const double limit = cut * std::max(core.spread, smallest);
-  const auto off =
-      std::ranges::count_if(values, [&](double d) { return std::abs(d - core.centre) > limit; });
-  pair.bends = bends(values, core.centre, limit);
-  pair.edge.exact = core.spread < exact_edge * smallest;  // may be off: a burst in a short take
-  pair.steady =
-      pair.edge.exact || static_cast<double>(off) <= broken * static_cast<double>(values.size());
+  double off = 0;
+  for (const auto& [value, weight] : distances)
+    if (std::abs(value - core.centre) > limit) off += weight;
+  pair.bends = bends(distances, core.centre, limit);
+  pair.steady = pair.edge.exact || off <= broken * weight_of(distances);
   pair.edge.hard = pair.steady && core.spread < hard_edge * smallest;
   return pair;
 }
@@ -102,15 +144,20 @@ bool RigidBody::is_rigid() const {
   return std::ranges::any_of(edges, [](const RigidEdge& e) { return e.hard; });
 }
 
-Core steady_core(std::vector<double>& values) {
-  if (values.size() <= fewest_values) return {0, std::numeric_limits<double>::infinity()};
-  std::ranges::sort(values);
-  const std::size_t third = (values.size() + 2) / 3;
-  std::size_t best = 0;
-  for (std::size_t k = 1; k + third < values.size(); ++k)
-    if (values[k + third] - values[k] < values[best + third] - values[best]) best = k;
-  const double low = values[best], high = values[best + third];
-  return {(low + high) / 2, (high - low) / 2 / deviations_of_third};
+Core steady_core(std::vector<WeighedDistance>& distances) {
+  if (distances.size() <= fewest_values) return {0, std::numeric_limits<double>::infinity()};
+  std::ranges::sort(distances, {}, &WeighedDistance::value);
+  const double third = weight_of(distances) / 3;
+  Core core{0, std::numeric_limits<double>::infinity()};
+  double held = 0;
+  for (std::size_t first = 0, last = 0; last < distances.size(); ++last) {
+    held += distances[last].weight;
+    while (held - distances[first].weight >= third) held -= distances[first++].weight;
+    const double low = distances[first].value, high = distances[last].value;
+    if (held < third || high - low >= 2 * deviations_of_third * core.spread) continue;
+    core = {(low + high) / 2, (high - low) / 2 / deviations_of_third};
+  }
+  return core;
 }
 
 RigidBody learn_rigid_body(const BodyTake& take, double smallest) {

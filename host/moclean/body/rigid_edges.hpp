@@ -30,13 +30,19 @@ struct RigidBody {
   bool is_rigid() const;  ///< has a hard edge, so that joints can be judged
 };
 
-/// Centre and spread of values, from the shortest interval that holds a third of them; an infinite
-/// spread for 20 values or fewer. Reorders the values.
+/// A distance of two joints, and how much its frame counts.
+struct WeighedDistance {
+  double value = 0;
+  double weight = 1;
+};
+
+/// Centre and spread of distances, from the shortest interval that holds a third of the weight; an
+/// infinite spread for 20 of them or fewer. Sorts them.
 struct Core {
   double centre = 0;
   double spread = 0;
 };
-Core steady_core(std::vector<double>& values);
+Core steady_core(std::vector<WeighedDistance>& distances);
 
 /// Learns the body. `smallest` is the spread that measurement noise gives a constant distance, in
 /// the unit of the take. Every frame of a short take is looked at, 400 to 800 of a longer one.

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 
+#include "moclean/body/run_edges.hpp"
 #include "moclean/core/linear_fill.hpp"
 #include "moclean/core/order_statistics.hpp"
 
@@ -12,6 +14,9 @@ namespace moclean {
 namespace {
 
 constexpr double cut = 5, vote = 0.4;
+constexpr Index turning_runs = 4;
+constexpr double mean_deviations = 4;
+constexpr double noise_of_distance = 1.4;  // of two samples, about sqrt 2
 constexpr double weight_of_exact = 1.6;  // alone against a single other one it is not outvoted
 constexpr double slow_seconds = 0.092, dense = 2e-3, least_spread = 1e-4;  // the last two: of size
 constexpr double hole_share = 0.6, spared_share = 0.9, spared_seconds = 0.04;
@@ -37,6 +42,7 @@ Distances distances(const BodyTake& take, std::span<const RigidEdge> edges) {
 using Row = Eigen::Array<double, 1, Eigen::Dynamic>;
 using Marks = Eigen::Array<bool, 1, Eigen::Dynamic>;
 using Column = Eigen::Array<bool, Eigen::Dynamic, 1>;
+using ConstColumn = Eigen::Ref<const Column>;
 
 // Centres and limits to compare distances with, one per edge.
 struct Limits {
@@ -122,7 +128,8 @@ void blame_all(const RigidBody& body, const Distances& d, const Limits& limits, 
 // Running medians in the place of the distances, and limits that fit them.
 Limits slow_down(const BodyTake& take, double size, Distances& d) {
   Limits limits(static_cast<std::size_t>(d.values.cols()));
-  std::vector<double> channel(static_cast<std::size_t>(take.frames())), seen;
+  std::vector<double> channel(static_cast<std::size_t>(take.frames()));
+  std::vector<WeighedDistance> seen;
   for (Index e = 0; e < d.values.cols(); ++e) {
     Eigen::Map<Eigen::VectorXd> values(channel.data(), take.frames());
     values = d.values.col(e);
@@ -131,7 +138,7 @@ Limits slow_down(const BodyTake& take, double size, Distances& d) {
     d.values.col(e) = values;
     seen.clear();
     for (Index i = 0; i < take.frames(); ++i)
-      if (d.both(i, e)) seen.push_back(values(i));
+      if (d.both(i, e)) seen.push_back({values(i)});
     const Core core = steady_core(seen);
     limits.centre(e) = core.centre;
     limits.limit(e) = cut * std::max(core.spread, least_spread * size);
@@ -152,66 +159,129 @@ void close_holes(const BodyTake& take, Mask& bad) {
     }
 }
 
-// Takes back flags that an exact distance to a joint without blame speaks against as long as they
-// last: a joint that was moved keeps a distance by coincidence, for a frame or so; one that turned
-// about the other keeps it. Returns the samples that were spared, [frames x joints].
+// Calls f(first, last) for every run of flagged frames [first, last).
+template <class F>
+void for_each_run(const ConstColumn& flags, const F& f) {
+  for (Index first = 0, last = 0; first < flags.size(); first = last) {
+    last = first + 1;
+    if (!flags(first)) continue;
+    while (last < flags.size() && flags(last)) ++last;
+    f(first, last);
+  }
+}
+
+// Per joint the length of its shortest hard edge, which most often is its bone.
+std::vector<double> bone_lengths(const RigidBody& body) {
+  std::vector<double> shortest(body.judged.size(), std::numeric_limits<double>::infinity());
+  for (const RigidEdge& edge : body.edges)
+    if (edge.hard && edge.share == 1)
+      for (const Index j : {edge.first, edge.second}) {
+        double& own = shortest[static_cast<std::size_t>(j)];
+        own = std::min(own, edge.length);
+      }
+  return shortest;
+}
+
+// Takes back flags that a distance to a joint without blame speaks against as long as they last: a
+// joint that was moved keeps an exact distance by coincidence, for a frame or so; one that turned
+// about the other keeps it. A hard distance is looked at by its mean, and for longer. Returns
+// samples that such a mean speaks for, [frames x joints].
 Mask spare(const RigidBody& body, const Distances& d, const Limits& limits, Index shortest,
            Mask& bad) {
   const Mask blamed = bad;
-  Mask spared = Mask::Constant(bad.rows(), bad.cols(), false);
+  Mask turned = Mask::Constant(bad.rows(), bad.cols(), false);
+  const std::vector<double> bones = bone_lengths(body);
+  for (std::size_t e = 0; e < body.edges.size(); ++e) {
+    const RigidEdge& edge = body.edges[e];
+    if (!edge.hard) continue;
+    const auto k = static_cast<Index>(e);
+    const Eigen::ArrayXd off = d.values.col(k).array() - limits.centre(k);
+    const Column right = d.both.col(k) && off.abs() <= limits.limit(k);
+    for (const auto& [joint, other] :
+         {std::pair(edge.first, edge.second), std::pair(edge.second, edge.first)}) {
+      if (!edge.exact && edge.length > bones[static_cast<std::size_t>(joint)]) continue;
+      const Column witnessed = d.both.col(k) && !blamed.col(other), kept = witnessed && right;
+      for_each_run(blamed.col(joint), [&, j = joint](Index first, Index last) {
+        const auto run = kept.segment(first, last - first);
+        const auto seen = witnessed.segment(first, last - first);
+        const auto count = static_cast<double>(seen.count());
+        if (seen.count() < (edge.exact ? shortest : turning_runs * shortest) ||
+            static_cast<double>(run.count()) < spared_share * count)
+          return;
+        if (!edge.exact) {
+          const double mean = seen.select(off.segment(first, last - first), 0).sum() / count;
+          if (std::abs(mean) > mean_deviations * limits.limit(k) / cut / std::sqrt(count)) return;
+          turned.col(j).segment(first, last - first) =
+              turned.col(j).segment(first, last - first) || run;
+        }
+        auto flags = bad.col(j).segment(first, last - first);
+        flags = flags && !run;
+      });
+    }
+  }
+  return turned;
+}
+
+// Takes back flags of joints that no exact distance accuses and that neither leave nor come back by
+// a jump: a distance that is steady for a while changes gradually when the pose does.
+void spare_gradual(const BodyTake& take, const RigidBody& body, const Distances& d,
+                   const Limits& limits, double noise, Mask& bad) {
+  const Mask blamed = bad;
+  Mask accused = Mask::Constant(bad.rows(), bad.cols(), false);
   for (std::size_t e = 0; e < body.edges.size(); ++e) {
     const RigidEdge& edge = body.edges[e];
     if (!edge.exact) continue;
     const auto k = static_cast<Index>(e);
-    const Column right =
-        d.both.col(k) && (d.values.col(k).array() - limits.centre(k)).abs() <= limits.limit(k);
-    for (const auto& [joint, other] :
-         {std::pair(edge.first, edge.second), std::pair(edge.second, edge.first)}) {
-      const Column witnessed = d.both.col(k) && !blamed.col(other), kept = witnessed && right;
-      for (Index first = 0, last = 0; first < bad.rows(); first = last) {
-        last = first + 1;
-        if (!blamed(first, joint)) continue;
-        while (last < bad.rows() && blamed(last, joint)) ++last;
-        const auto run = kept.segment(first, last - first);
-        const Index seen = witnessed.segment(first, last - first).count();
-        if (seen < shortest ||
-            static_cast<double>(run.count()) < spared_share * static_cast<double>(seen))
-          continue;
-        auto flags = bad.col(joint).segment(first, last - first);
-        flags = flags && !run;
-        spared.col(joint).segment(first, last - first) =
-            spared.col(joint).segment(first, last - first) || run;
-      }
-    }
+    const Column off =
+        d.both.col(k) && (d.values.col(k).array() - limits.centre(k)).abs() > limits.limit(k);
+    accused.col(edge.first) = accused.col(edge.first) || off;
+    accused.col(edge.second) = accused.col(edge.second) || off;
   }
-  return spared;
+  for (Index j = 0; j < bad.cols(); ++j)
+    for_each_run(blamed.col(j), [&](Index first, Index last) {
+      const Index count = last - first;
+      if (2 * accused.col(j).segment(first, count).count() >= count) return;
+      if (!has_edge(take, j, first, last, noise))
+        bad.col(j).segment(first, count).setConstant(false);
+    });
+}
+
+// The edges that tell of each joint: its exact ones, but all hard ones of a joint without any.
+std::vector<std::vector<Index>> witnesses_of(const RigidBody& body) {
+  const std::size_t joints = body.judged.size();
+  std::vector<bool> has_exact(joints, false);
+  for (const RigidEdge& edge : body.edges)
+    for (const Index j : {edge.first, edge.second})
+      if (edge.exact) has_exact[static_cast<std::size_t>(j)] = true;
+  std::vector<std::vector<Index>> own(joints);
+  for (std::size_t e = 0; e < body.edges.size(); ++e)
+    for (const Index end : {body.edges[e].first, body.edges[e].second}) {
+      const auto j = static_cast<std::size_t>(end);
+      if (has_exact[j] ? body.edges[e].exact : body.edges[e].hard)
+        own[j].push_back(static_cast<Index>(e));
+    }
+  return own;
 }
 
 void vouch(const RigidBody& body, const Distances& d, const Limits& limits, RigidFlags& flags) {
-  const std::size_t joints = body.judged.size();
-  std::vector<int> degree(joints, 0), right(joints);
-  std::vector<bool> wrong(joints);
-  for (const RigidEdge& edge : body.edges)
-    if (edge.hard)
-      for (const Index j : {edge.first, edge.second}) ++degree[static_cast<std::size_t>(j)];
+  constexpr Index enough = 2;
+  const std::vector<std::vector<Index>> witnesses = witnesses_of(body);
+  const auto linked =
+      std::ranges::count_if(witnesses, [](const auto& own) { return !own.empty(); });
   Marks off(d.values.cols());
   for (Index i = 0; i < d.values.rows(); ++i) {
     compare(d, limits, i, off);
-    std::ranges::fill(right, 0);
-    std::fill(wrong.begin(), wrong.end(), false);
-    for (std::size_t e = 0; e < body.edges.size(); ++e) {
-      const auto edge = static_cast<Index>(e);
-      if (!body.edges[e].hard || !d.both(i, edge)) continue;
-      for (const Index j : {body.edges[e].first, body.edges[e].second}) {
-        right[static_cast<std::size_t>(j)] += !off(edge);
-        if (off(edge)) wrong[static_cast<std::size_t>(j)] = true;
-      }
-    }
-    for (std::size_t j = 0; j < joints; ++j) {
+    for (std::size_t j = 0; j < witnesses.size(); ++j) {
+      const auto& own = witnesses[j];
+      const auto right = std::ranges::count_if(own, [&](Index e) { return d.both(i, e) && !off(e); });
+      const bool wrong = std::ranges::any_of(own, [&](Index e) { return off(e); });
+      const auto needed = std::clamp<Index>(static_cast<Index>(own.size()), 1, enough);
       const auto joint = static_cast<Index>(j);
-      flags.vouched(i, joint) = right[j] >= 2 && !wrong[j] && !flags.bad(i, joint);
-      flags.consistent(i, joint) = right[j] >= std::clamp(degree[j], 1, 2) && !wrong[j];
+      flags.consistent(i, joint) = right >= needed && !wrong;
+      flags.vouched(i, joint) = flags.consistent(i, joint) && !flags.bad(i, joint);
     }
+    const bool most = 2 * flags.consistent.row(i).count() > linked;
+    if (!most) flags.vouched.row(i).setConstant(false);
   }
 }
 
@@ -237,10 +307,11 @@ RigidFlags judge(const BodyTake& take, const RigidBody& body, double size, doubl
     blame_all(body, slow, slow_limits, flags.bad);
   }
   close_holes(take, flags.bad);
-  const Mask spared =
+  const Mask turned =
       spare(body, d, limits, odd_frames(spared_seconds, take.frame_rate), flags.bad);
+  spare_gradual(take, body, d, limits, smallest / noise_of_distance, flags.bad);
   vouch(body, d, limits, flags);
-  flags.vouched = flags.vouched || spared;
+  flags.vouched = flags.vouched || (turned && !flags.bad);
   return flags;
 }
 

@@ -88,7 +88,7 @@ MatrixNormalWindow::FirstGuess MatrixNormalWindow::first_guess() const {
     const double q = std::max(power, 0.0) / std::pow(h, 4) + std::numeric_limits<double>::min();
     guess.stiffness(j) = std::clamp(square(sigma_) / q, 1.0, most_stiffness);
     running_median(channel, method_->median_frames);
-    guess.motion.col(j).head(frames_) = values;
+    for (Index i = 0; i < frames_; ++i) guess.motion(i, j) = values(i);
     guess.motion.col(j).tail(rows() - frames_).setConstant(values(frames_ - 1));
   }
   return guess;
@@ -182,36 +182,20 @@ void MatrixNormalWindow::weigh_softly(const Matrix& energy) {
       method_->soft_first * std::pow(method_->soft_last / method_->soft_first, place);
   for (Index i = 0; i < frames_; ++i)
     for (Index j = 0; j < columns(); ++j) {
-      weights_(i, j) = observed_(i, j) / square(1 + energy(i, j) / square(cut));
+      weights_(i, j) =
+          vouched(i, j) ? observed_(i, j) : observed_(i, j) / square(1 + energy(i, j) / square(cut));
       solve_weights_(i, j) = weights_(i, j) / (square(sigma_) + predictive_(j) / 6);
     }
 }
 
 void MatrixNormalWindow::weigh_hard(const Matrix& energy, const ConstMatrixRef& motion) {
   Mask good = energy.array() < square(method_->hard);
-  if (known_->vouched.size() > 0) reinstate(good);
+  for (Index j = 0; j < columns(); ++j)
+    for (Index i = 0; i < frames_; ++i) good(i, j) = good(i, j) || vouched(i, j);
   weights_ = good.select(observed_, 0);
   solve_weights_.topRows(frames_) = weights_ / square(sigma_);
   const bool exact = std::ranges::any_of(known_->links, [](const auto& l) { return l.exact; });
   if (exact) build_on_lengths(motion);
-}
-
-// A vouched joint that would be rejected together with two vouched joints linked to it is not.
-void MatrixNormalWindow::reinstate(Mask& good) const {
-  const Index joints = known_->vouched.cols(), width = method_->joint_columns;
-  Mask out(frames_, joints);
-  for (Index j = 0; j < joints; ++j)
-    out.col(j) = known_->vouched.col(j) && !good.middleCols(j * width, width).rowwise().all();
-  Eigen::Array<int, Eigen::Dynamic, Eigen::Dynamic> linked =
-      Eigen::Array<int, Eigen::Dynamic, Eigen::Dynamic>::Zero(frames_, joints);
-  for (const DistanceLink& link : known_->links) {
-    if (!link.hard) continue;
-    linked.col(link.first) += out.col(link.second).cast<int>();
-    linked.col(link.second) += out.col(link.first).cast<int>();
-  }
-  for (Index j = 0; j < joints; ++j)
-    for (Index i = 0; i < frames_; ++i)
-      if (out(i, j) && linked(i, j) >= 2) good.row(i).segment(j * width, width).setConstant(true);
 }
 
 // In gaps longer than a few frames, S put on the exact lengths is as good as a sample of the

@@ -86,6 +86,9 @@ class MatrixNormalWindow {
     double variance;
   };
 
+  bool vouched(Index frame, Index column) const {
+    return known_->vouched.size() > 0 && known_->vouched(frame, column / method_->joint_columns);
+  }
   bool hard() const { return step_ >= method_->soft_steps; }
   double share_kept() const;
   double least_spectrum() const;
@@ -94,7 +97,6 @@ class MatrixNormalWindow {
   Matrix energies(const ConstMatrixRef& motion) const;
   void weigh_softly(const Matrix& energy);
   void weigh_hard(const Matrix& energy, const ConstMatrixRef& motion);
-  void reinstate(Mask& good) const;
   void find_drawn();
   void draw();
   void build_on_lengths(const ConstMatrixRef& motion);
