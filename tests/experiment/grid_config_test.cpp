@@ -134,6 +134,25 @@ TEST_F(GridFile, TakesAreReadAndCut) {
   EXPECT_THAT(found.missing, ElementsAre(folder_.path() / "nowhere/run.npy"));
 }
 
+TEST_F(GridFile, TakesAreThinnedAfterTheyAreCut) {
+  write_clip(folder_.path() / "walk.npy", synthetic_walk(20));
+
+  const GridConfig config = read(with("rate = 60", "rate = 60\nthin = 4"));
+  const Clip thinned = read_takes(config).takes.at(0).clip;
+
+  const Matrix walk = synthetic_walk(20).samples;
+  EXPECT_EQ(config.takes[0].thin, 4);
+  EXPECT_EQ(config.takes[1].thin, 1);
+  ASSERT_EQ(thinned.frames(), 2);  // frames 2 and 6 of 2 .. 7
+  EXPECT_EQ(thinned.samples.row(0), walk.row(2));
+  EXPECT_EQ(thinned.samples.row(1), walk.row(6));
+  EXPECT_EQ(thinned.frame_rate, 15);
+  EXPECT_EQ(thinned.columns.size(), 93U);
+  for (const char* wrong : {"0", "1.5", "\"2\""})
+    expect_refused(with("rate = 60", std::string("thin = ") + wrong),
+                   "7: take 1: thin: expected a whole number of at least 1");
+}
+
 TEST_F(GridFile, TakesThatCannotServeAreRefused) {
   Clip walk = synthetic_walk(20);
   walk.samples(3, 5) = std::nan("");

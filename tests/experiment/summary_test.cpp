@@ -89,5 +89,18 @@ TEST_F(Ranking, CellsBecomeATable) {
   EXPECT_THAT(text, testing::HasSubstr(",p,two,1," + own + ",4,,,,\"needs, more\"\n"));
 }
 
+TEST_F(Ranking, FiguresThatCameLaterStandAtTheEnd) {
+  results_[1].figures["strikes"] = 0.75;
+  results_[1].figures["worst"] = 2;
+  results_[1].figures["smoothness"] = 3;
+
+  const std::string text = cells_csv(experiment_, cells_, results_);
+
+  EXPECT_THAT(text, testing::StartsWith("take,noise,method,seed,noise_seed,frames,fd,missing,"
+                                        "seconds,smoothness,refused,strikes,worst\n"));
+  EXPECT_THAT(text, testing::HasSubstr(",0.5,3,,0.75,2\n"));
+  EXPECT_THAT(text, testing::HasSubstr(",0.5,,,,\n"));
+}
+
 }  // namespace
 }  // namespace moclean::test

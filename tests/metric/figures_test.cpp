@@ -8,6 +8,7 @@
 
 #include "moclean/metric/metric.hpp"
 #include "moclean/metric/motion_error.hpp"
+#include "moclean/metric/strikes.hpp"
 #include "moclean/metric/touched.hpp"
 
 namespace moclean {
@@ -23,7 +24,10 @@ class Figures : public testing::Test {
   }
 
   Clip clip(const Matrix& samples) const {
-    return {.samples = samples, .columns = {"a.x", "a.y", "a.z", "b.x", "b.y", "b.z"}, .unit = ""};
+    return {.samples = samples,
+            .columns = {"a.x", "a.y", "a.z", "b.x", "b.y", "b.z"},
+            .frame_rate = 30,
+            .unit = ""};
   }
 
   const Clip truth_ = clip(Matrix{{0, 0, 0, 0, 0, 1}, {0, 1, 0, 0, 1, 1}, {0, 3, 0, 0, 3, 1}});
@@ -59,14 +63,19 @@ TEST_F(Figures, AreThoseOfTheMetrics) {
   EXPECT_EQ(found["precision"], 0.5);
   EXPECT_EQ(found["recall"], 0.5);
   EXPECT_EQ(found["f1"], 0.5);
+  EXPECT_EQ(found["worst"], 2);
+  EXPECT_EQ(found["strikes"], strikes_kept(truth_, estimate_));
   EXPECT_EQ(found.size(), figures().size());
 }
 
 TEST_F(Figures, LeaveOutWhatTheyLackInputsFor) {
-  const auto found = values({.truth = truth_, .estimate = estimate_});
+  Clip without_rate = truth_;
+  without_rate.frame_rate = 0;
+
+  const auto found = values({.truth = without_rate, .estimate = estimate_});
 
   for (const char* name :
-       {"rmse_touched", "rmse_untouched", "bone_length", "precision", "recall", "f1"})
+       {"rmse_touched", "rmse_untouched", "bone_length", "precision", "recall", "f1", "strikes"})
     EXPECT_FALSE(found.contains(name)) << name;
   EXPECT_TRUE(found.contains("fd"));
 }

@@ -40,6 +40,15 @@ TEST(PositionError, LeavesOutAJointThatIsPartlyUnseen) {
   EXPECT_TRUE(std::isnan(position_error(truth, two_joints(Matrix::Constant(1, 6, nan)))));
 }
 
+TEST(WorstDisplacement, IsTheLargestDistanceInAllThreeCoordinates) {
+  const Clip truth = two_joints(Matrix{{0, 0, 0, 1, 1, 1}, {0, 0, 0, 1, 1, 1}});
+  const Clip estimate = two_joints(Matrix{{3, 4, 0, 1, 1, 5.5}, {nan, 40, 0, 3, 2, 3}});
+
+  EXPECT_NEAR(worst_displacement(truth, estimate), 5, test::tolerance::by_hand(5));
+  EXPECT_EQ(worst_displacement(truth, truth), 0);
+  EXPECT_TRUE(std::isnan(worst_displacement(truth, two_joints(Matrix::Constant(2, 6, nan)))));
+}
+
 TEST(LiPositionError, IsTheNormOverTheNumberOfEntries) {
   const Clip truth = two_joints(Matrix{{0, 0, 0, 1, 1, 1}, {0, 0, 0, 1, 1, 1}});
   const Clip estimate = two_joints(Matrix{{3, 4, 0, 1, 1, 1}, {0, 0, 0, 13, 1, 1}});
@@ -122,6 +131,7 @@ TEST(MotionErrors, RefuseDifferentShapes) {
   const Clip a = two_joints(Matrix::Zero(3, 6)), b = two_joints(Matrix::Zero(4, 6));
 
   EXPECT_THROW(position_error(a, b), ShapeError);
+  EXPECT_THROW(worst_displacement(a, b), ShapeError);
   EXPECT_THROW(li_position_error(a, b), ShapeError);
   EXPECT_THROW(bone_length_error(a, b, std::vector<int>{-1, 0}), ShapeError);
   EXPECT_THROW(acceleration_error(a, b), ShapeError);

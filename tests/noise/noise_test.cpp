@@ -42,7 +42,9 @@ TEST(ParseNoise, ReadsBackWhatToStringWrites) {
 }
 
 TEST(ParseNoise, NamesWhatIsWrongAndWhatWouldBeRight) {
-  const std::string all = "gaussian-frames, gaussian, dropout, burst, gap, swap, drift, ramp";
+  const std::string all =
+      "gaussian-frames, gaussian, dropout, burst, gap, swap, drift, ramp, "
+      "jitter, round, white, limb-swap, inertial-drift";
   expect_refused("salt:frames=1", "unknown noise 'salt', expected one of " + all);
   expect_refused("", "unknown noise '', expected one of " + all);
   expect_refused("gaussian-frames:frame=4",
@@ -91,18 +93,31 @@ TEST(ParseNoise, ReadsEveryModel) {
   EXPECT_EQ(parse_noise("swap:count=2"), Noise(Swap{.runs = {.count = 2}}));
   EXPECT_EQ(parse_noise("drift:count=2,sd=9"), Noise(Drift{.runs = {.count = 2}, .sd = 9}));
   EXPECT_EQ(parse_noise("ramp:count=2,sd=9"), Noise(Ramp{.runs = {.count = 2}, .sd = 9}));
+  EXPECT_EQ(parse_noise("jitter:sd=2,cutoff=3"), Noise(Jitter{.sd = 2.0, .cutoff = 3.0}));
+  EXPECT_EQ(parse_noise("round:step=2"), Noise(Round{.step = 2.0}));
+  EXPECT_EQ(parse_noise("white:sd-mm=2,unit-mm=10"), Noise(White{.sd_mm = 2.0, .unit_mm = 10.0}));
+  EXPECT_EQ(parse_noise("limb-swap:count=2"), Noise(LimbSwap{.runs = {.count = 2}}));
+  EXPECT_EQ(parse_noise("inertial-drift:sd=2"), Noise(InertialDrift{.sd = 2.0}));
   for (const char* text :
        {"gaussian:sd=0.1", "dropout:fraction=0.1,fill=nan,background=none,snr=15",
-        "burst:count=3,length=40,sd=2", "swap:fraction=0.25,length=60"})
+        "burst:count=3,length=40,sd=2", "swap:fraction=0.25,length=60", "jitter:sd=0.5,cutoff=6",
+        "round:step=0.01", "white:sd-mm=3", "white:sd-mm=3,unit-mm=25.4",
+        "limb-swap:count=1,length=20", "inertial-drift:sd=2,of=limb"})
     EXPECT_EQ(to_string(parse_noise(text)), text);
 }
 
 TEST(Corrupt, EveryModelRepeatsWithTheSeedAndKeepsToItsMask) {
-  const Clip walk = test::synthetic_walk(100);
+  Clip walk = test::synthetic_walk(100);
+  for (std::size_t c = 0; c < 3; ++c) {  // a limb in two
+    walk.columns[3 + c].replace(0, 6, "lfoot");
+    walk.columns[6 + c].replace(0, 6, "rfoot");
+  }
   for (const char* model :
        {"gaussian-frames:frames=20", "gaussian:snr=10", "dropout:background=none,fill=nan",
         "burst:count=4,length=20", "gap:count=4,length=20", "swap:count=4,length=20",
-        "drift:count=4,length=20", "ramp:count=4,length=20"}) {
+        "drift:count=4,length=20", "ramp:count=4,length=20", "jitter:sd=0.3,cutoff=6",
+        "white:sd-mm=3,unit-mm=56.4", "limb-swap:count=1,length=20", "inertial-drift:sd=3",
+        "inertial-drift:sd=3,of=limb"}) {
     const Noise noise = parse_noise(model);
 
     const Corrupted noisy = corrupt(walk, noise, 3), again = corrupt(walk, noise, 3);

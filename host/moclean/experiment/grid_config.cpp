@@ -50,7 +50,8 @@ fs::path path_of(const TomlSection& section, std::string_view key, const fs::pat
 
 GridTake take_of(const TomlSection& section, const fs::path& config,
                  const std::vector<std::string>& excluded, const Environment& environment) {
-  section.allow({"file", "label", "frames", "optional", "rate", "skeleton", "columns_exclude"});
+  section.allow(
+      {"file", "label", "frames", "thin", "optional", "rate", "skeleton", "columns_exclude"});
   GridTake take{.file = path_of(section, "file", config, environment), .label = {}};
   take.label = section.text("label", take.file.stem().string());
   if (section.has("frames")) {
@@ -60,6 +61,7 @@ GridTake take_of(const TomlSection& section, const fs::path& config,
                                          section.text("frames")));
     take.frames = *frames;
   }
+  take.thin = section.count("thin");
   take.optional = section.flag("optional");
   take.rate = section.positive("rate");
   if (section.has("skeleton")) take.skeleton = path_of(section, "skeleton", config, environment);
@@ -133,6 +135,16 @@ Clip selected(const Clip& clip, const FrameSpan& frames, const GridTake& take,
   return cut(clip, first, last);
 }
 
+// Every so many frames, from the first.
+Clip thinned(const Clip& clip, Index every) {
+  if (every == 1) return clip;
+  const Index kept = (clip.frames() - 1) / every + 1;
+  return {.samples = clip.samples(Eigen::seqN(0, kept, every), Eigen::all),
+          .columns = clip.columns,
+          .frame_rate = clip.frame_rate / static_cast<double>(every),
+          .unit = clip.unit};
+}
+
 ExperimentTake read_take(const GridTake& take, const FrameSpan& frames, const fs::path& config) {
   const ReadOptions options{.skeleton = take.skeleton, .rate = take.rate};
   ExperimentTake result{.name = take.file.stem().string(),
@@ -148,6 +160,7 @@ ExperimentTake read_take(const GridTake& take, const FrameSpan& frames, const fs
                                                frames.first.value_or(0) + f,
                                                result.clip.columns[static_cast<std::size_t>(c)],
                                                result.clip.samples(f, c)));
+  result.clip = thinned(result.clip, take.thin);
   if (const auto skeleton = read_skeleton(take.file, options))
     result.parents = joint_parents(*skeleton, result.clip);
   return result;

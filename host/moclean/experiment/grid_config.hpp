@@ -23,6 +23,7 @@ struct GridTake {
   std::filesystem::path file;  ///< relative paths are relative to the grid file
   std::string label;           ///< default: name of the file, without extension
   FrameSpan frames = {};
+  Index thin = 1;         ///< every so many frames is used, and the rate divided by it
   bool optional = false;  ///< left out, visibly, if the file does not exist
   double rate = 0;        ///< Hz for files that state none; 0: none given
   std::filesystem::path skeleton = {};

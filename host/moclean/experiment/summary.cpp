@@ -1,6 +1,7 @@
 #include "moclean/experiment/summary.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -52,6 +53,9 @@ std::string quoted(const std::string& text) {
     result += letter == '"' ? std::string("\"\"") : std::string{letter};
   return result + '"';
 }
+
+// A number as a further field of a line; NaN is empty.
+std::string field(double value) { return std::isnan(value) ? "," : fmt::format(",{}", value); }
 
 // Counts, incomplete cells, FD and speed of one method; the ranks are not known yet.
 Standing standing_of(std::size_t method, const Experiment& experiment, std::span<const Cell> cells,
@@ -109,24 +113,30 @@ std::vector<Standing> ranking(const Experiment& experiment, std::span<const Cell
 
 std::string cells_csv(const Experiment& experiment, std::span<const Cell> cells,
                       std::span<const CellResult> results) {
+  // Figures that came later stand behind everything else, so that columns keep their places.
+  constexpr std::array<std::string_view, 2> later = {"strikes", "worst"};
   std::set<std::string> names;
+  std::vector<std::string> appended;
   for (const CellResult& result : results)
     for (const auto& [name, value] : result.figures) names.insert(name);
+  for (const std::string_view name : later)
+    if (names.erase(std::string(name))) appended.emplace_back(name);
+
   std::string text = "take,noise,method,seed,noise_seed,frames";
   for (const std::string& name : names) text += "," + name;
-  text += ",refused\n";
+  text += ",refused";
+  for (const std::string& name : appended) text += "," + name;
+  text += '\n';
   for (std::size_t i = 0; i < cells.size(); ++i) {
     const auto& [take, noise, method, seed, own_seed] = cells[i];
     text += fmt::format("{},{},{},{},{},{}", quoted(experiment.takes[take].label),
                         quoted(experiment.noises[noise].label),
                         quoted(experiment.methods[method].label), experiment.seeds[seed], own_seed,
                         results[i].frames);
-    for (const std::string& name : names) {
-      const double value = results[i].figure(name);
-      text += std::isnan(value) ? "," : fmt::format(",{}", value);
-    }
+    for (const std::string& name : names) text += field(results[i].figure(name));
     text += ',';
     text += quoted(results[i].refused);
+    for (const std::string& name : appended) text += field(results[i].figure(name));
     text += '\n';
   }
   return text;

@@ -47,8 +47,9 @@ std::vector<Standing> ranking(const Experiment& experiment, std::span<const Cell
                               std::span<const CellResult> results);
 
 /// A table of all cells, one line each with a head: take, noise, method (labels), seed, noise_seed,
-/// frames, every figure there is, `refused`. Numbers are written so that they read back to the same
-/// bits; fields are quoted where needed (RFC 4180); NaN and absent figures are empty.
+/// frames, every figure there is but those that came later, `refused`, and those (strikes, worst).
+/// Numbers are written so that they read back to the same bits; fields are quoted where needed (RFC
+/// 4180); NaN and absent figures are empty.
 std::string cells_csv(const Experiment& experiment, std::span<const Cell> cells,
                       std::span<const CellResult> results);
 

@@ -69,6 +69,15 @@ class TomlSection {
     return *value;
   }
 
+  /// A whole number >= 1, or 1 if the key is absent.
+  std::int64_t count(std::string_view key) const {
+    const toml::node* node = table_.get(key);
+    if (!node) return 1;
+    const auto value = node->value_exact<std::int64_t>();
+    if (!value || *value < 1) fail(key, expected("a whole number of at least 1", *node));
+    return *value;
+  }
+
   /// A list of texts; empty if the key is absent.
   std::vector<std::string> texts(std::string_view key) const {
     std::vector<std::string> found;

@@ -4,6 +4,7 @@
 
 #include "moclean/metric/metric.hpp"
 #include "moclean/metric/motion_error.hpp"
+#include "moclean/metric/strikes.hpp"
 #include "moclean/metric/touched.hpp"
 
 namespace moclean {
@@ -86,6 +87,19 @@ constexpr std::array all_figures = {
            .of = [](const Evaluation& e) -> Value {
              const auto d = detected(e);
              return d ? Value(d->f1()) : std::nullopt;
+           }},
+    Figure{
+        .name = "worst",
+        .description = "largest displacement of a joint",
+        .unit = length,
+        .of = [](const Evaluation& e) -> Value { return worst_displacement(e.truth, e.estimate); }},
+    Figure{.name = "strikes",
+           .description = "share kept of the ten hardest impacts",
+           .unit = share,
+           .larger_is_better = true,
+           .of = [](const Evaluation& e) -> Value {
+             if (!(e.truth.frame_rate > 0)) return std::nullopt;
+             return strikes_kept(e.truth, e.estimate);
            }},
 };
 

@@ -52,6 +52,19 @@ double position_error(const Clip& truth, const Clip& estimate) {
   return mean_norm(estimate.samples - truth.samples, joints(truth));
 }
 
+double worst_displacement(const Clip& truth, const Clip& estimate) {
+  require_same_shape(truth.samples, estimate.samples);
+  double worst = std::nan("");
+  for (const Joint& joint : joints(truth))
+    for (Index f = 0; f < truth.frames(); ++f) {
+      const auto row = [&](const Clip& clip) {
+        return clip.samples.row(f).segment(joint.first_column, joint.columns);
+      };
+      worst = std::fmax(worst, (row(estimate) - row(truth)).norm());  // leaves NaN out
+    }
+  return worst;
+}
+
 double li_position_error(const Clip& truth, const Clip& estimate) {
   require_same_shape(truth.samples, estimate.samples);
   Sum squares;

@@ -17,6 +17,9 @@ namespace moclean {
 /// Mean Euclidean distance of a joint from where it was, over all frames and joints.
 double position_error(const Clip& truth, const Clip& estimate);
 
+/// Largest Euclidean distance of a joint from where it was, over all frames and joints.
+double worst_displacement(const Clip& truth, const Clip& estimate);
+
 /// Position error as printed in Li 2022, equation (11): |estimate - truth|_2 / (f d). Falls with
 /// 1/sqrt(f d) for errors of equal size, so it compares clips of equal shape only.
 double li_position_error(const Clip& truth, const Clip& estimate);

@@ -7,14 +7,17 @@
 #include <vector>
 
 #include "moclean/motion/clip.hpp"
+#include "moclean/noise/background.hpp"
 #include "moclean/noise/gaussian.hpp"
 #include "moclean/noise/gaussian_frames.hpp"
+#include "moclean/noise/limbs.hpp"
 #include "moclean/noise/runs.hpp"
 
 namespace moclean {
 
 /// Every noise model there is.
-using Noise = std::variant<GaussianFrames, Gaussian, Dropout, Burst, Gap, Swap, Drift, Ramp>;
+using Noise = std::variant<GaussianFrames, Gaussian, Dropout, Burst, Gap, Swap, Drift, Ramp, Jitter,
+                           Round, White, LimbSwap, InertialDrift>;
 
 /// What their specifications begin with.
 std::vector<std::string_view> noise_names();

@@ -11,33 +11,9 @@
 namespace moclean {
 namespace {
 
-void check_runs(std::string_view noise, const Runs& runs) {
-  if (runs.count.has_value() == runs.fraction.has_value())
-    throw ArgumentError(fmt::format("{} needs count=RUNS or fraction=SHARE, and not both", noise));
-  if (runs.count && *runs.count < 0)
-    throw ArgumentError(fmt::format("{}: count is {}, expected at least 0", noise, *runs.count));
-  if (runs.fraction && !(*runs.fraction >= 0 && *runs.fraction <= 1))
-    throw ArgumentError(fmt::format("{}: fraction is {}, expected 0 to 1", noise, *runs.fraction));
-  if (runs.length < 1)
-    throw ArgumentError(fmt::format("{}: length is {}, expected at least 1", noise, runs.length));
-}
-
 void check_deviation(std::string_view noise, double sd) {
   if (!(sd >= 0 && std::isfinite(sd)))
     throw ArgumentError(fmt::format("{}: sd is {}, expected at least 0", noise, sd));
-}
-
-Index number_of(std::string_view noise, const Runs& runs, Index frames, Index joint_count) {
-  if (runs.length > frames)
-    throw ArgumentError(fmt::format("{}: length is {}, but the clip has only {} frames", noise,
-                                    runs.length, frames));
-  if (runs.count) return *runs.count;
-  return std::llround(*runs.fraction * static_cast<double>(joint_count * frames) /
-                      static_cast<double>(runs.length));
-}
-
-Index draw_index(Random& random, Index bound) {
-  return static_cast<Index>(random.below(static_cast<std::uint64_t>(bound)));
 }
 
 Mask nothing_touched(const Matrix& samples) {
@@ -51,7 +27,7 @@ Mask displace(std::string_view name, const Runs& runs, double sd, Random& random
   const std::vector<Joint> all = joints(clip);
   const auto count = static_cast<Index>(all.size());
   Mask touched = nothing_touched(clip.samples);
-  for (Index left = number_of(name, runs, clip.frames(), count); left > 0; --left) {
+  for (Index left = number_of_runs(name, runs, clip.frames(), count); left > 0; --left) {
     const Joint& joint = all[static_cast<std::size_t>(draw_index(random, count))];
     const Index first = draw_index(random, clip.frames() - runs.length + 1);
     for (Index c = joint.first_column; c < joint.first_column + joint.columns; ++c) {
@@ -81,6 +57,30 @@ std::vector<Joint> exchangeable(const Clip& clip) {
 }
 
 }  // namespace
+
+void check_runs(std::string_view noise, const Runs& runs) {
+  if (runs.count.has_value() == runs.fraction.has_value())
+    throw ArgumentError(fmt::format("{} needs count=RUNS or fraction=SHARE, and not both", noise));
+  if (runs.count && *runs.count < 0)
+    throw ArgumentError(fmt::format("{}: count is {}, expected at least 0", noise, *runs.count));
+  if (runs.fraction && !(*runs.fraction >= 0 && *runs.fraction <= 1))
+    throw ArgumentError(fmt::format("{}: fraction is {}, expected 0 to 1", noise, *runs.fraction));
+  if (runs.length < 1)
+    throw ArgumentError(fmt::format("{}: length is {}, expected at least 1", noise, runs.length));
+}
+
+Index number_of_runs(std::string_view noise, const Runs& runs, Index frames, Index places) {
+  if (runs.length > frames)
+    throw ArgumentError(fmt::format("{}: length is {}, but the clip has only {} frames", noise,
+                                    runs.length, frames));
+  if (runs.count) return *runs.count;
+  return std::llround(*runs.fraction * static_cast<double>(places * frames) /
+                      static_cast<double>(runs.length));
+}
+
+Index draw_index(Random& random, Index bound) {
+  return static_cast<Index>(random.below(static_cast<std::uint64_t>(bound)));
+}
 
 void check(const Burst& noise) {
   check_runs(Burst::name, noise.runs);
@@ -127,7 +127,7 @@ Mask add_noise(const Gap& noise, Random& random, Clip& clip) {
   const std::vector<Joint> all = joints(clip);
   const auto count = static_cast<Index>(all.size());
   const Mask observed = !clip.samples.array().isNaN();
-  for (Index left = number_of(Gap::name, noise.runs, clip.frames(), count); left > 0; --left) {
+  for (Index left = number_of_runs(Gap::name, noise.runs, clip.frames(), count); left > 0; --left) {
     const Joint& joint = all[static_cast<std::size_t>(draw_index(random, count))];
     const Index first = draw_index(random, clip.frames() - noise.runs.length + 1);
     clip.samples.block(first, joint.first_column, noise.runs.length, joint.columns)
@@ -141,7 +141,8 @@ Mask add_noise(const Swap& noise, Random& random, Clip& clip) {
   const std::vector<Joint> all = exchangeable(clip);
   const auto count = static_cast<Index>(all.size());
   const Matrix before = clip.samples;
-  for (Index left = number_of(Swap::name, noise.runs, clip.frames(), count); left > 0; --left) {
+  for (Index left = number_of_runs(Swap::name, noise.runs, clip.frames(), count); left > 0;
+       --left) {
     const Index a = draw_index(random, count);
     const Index other = draw_index(random, count - 1);
     const Joint& one = all[static_cast<std::size_t>(a)];

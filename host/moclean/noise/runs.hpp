@@ -27,6 +27,16 @@ struct Runs {
   }
 };
 
+/// Throws ArgumentError, naming the noise, for parameters out of range.
+void check_runs(std::string_view noise, const Runs& runs);
+
+/// How many runs there are in a clip with that many places (joints, pairs of limbs) for them.
+/// Throws ArgumentError, naming the noise, if a run is longer than the clip.
+Index number_of_runs(std::string_view noise, const Runs& runs, Index frames, Index places);
+
+/// An index below `bound`, all equally likely.
+Index draw_index(Random& random, Index bound);
+
 /// A joint is displaced by the same vector throughout a run, as by a marker taken for another
 /// thing: each coordinate Gaussian(0, sd), drawn per run. Overlapping displacements add up.
 struct Burst {
