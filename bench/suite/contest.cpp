@@ -10,7 +10,7 @@ nlohmann::json description(const Workload& workload, const Solution& right) {
   std::vector<int> iterations, ranks;
   for (const SegmentOutcome& outcome : right.segments) {
     iterations.push_back(outcome.iterations);
-    ranks.push_back(outcome.rank);
+    ranks.push_back(outcome.rank.value_or(0));
   }
   std::sort(iterations.begin(), iterations.end());
   std::sort(ranks.begin(), ranks.end());

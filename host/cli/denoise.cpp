@@ -44,9 +44,12 @@ std::string range(const std::vector<DenoisedSegment>& segments, const Value& val
 // What the segments say; nothing for filters.
 std::string segments_text(const std::vector<DenoisedSegment>& segments) {
   if (segments.empty()) return "";
-  return fmt::format(" segments {}, iterations {}, rank {},", segments.size(),
-                     range(segments, [](const DenoisedSegment& s) { return s.outcome.iterations; }),
-                     range(segments, [](const DenoisedSegment& s) { return s.outcome.rank; }));
+  const auto iterations = [](const DenoisedSegment& s) { return s.outcome.iterations; };
+  const auto rank = [](const DenoisedSegment& s) { return s.outcome.rank.value_or(0); };
+  const bool has_rank = std::ranges::all_of(
+      segments, [](const DenoisedSegment& s) { return s.outcome.rank.has_value(); });
+  return fmt::format(" segments {}, iterations {},{}", segments.size(), range(segments, iterations),
+                     has_rank ? fmt::format(" rank {},", range(segments, rank)) : "");
 }
 
 void print_summary(const TakeReport& take, const fs::path& result) {
@@ -69,11 +72,16 @@ void warn_of_unobserved(const std::vector<TakeReport>& takes) {
     if (!take.unobserved.empty()) fmt::print(stderr, "moclean: {}\n", unobserved_line(take));
 }
 
+void tell_of_changes(const std::vector<TakeReport>& takes) {
+  for (const TakeReport& take : takes)
+    if (is_changed_much(take)) fmt::print(stderr, "moclean: {}\n", changed_line(take));
+}
+
 ExitCode warn_if_not_converged(const std::vector<TakeReport>& takes) {
   ExitCode code = ExitCode::done;
   for (const TakeReport& take : takes) {
     const auto failed = std::ranges::count_if(
-        take.segments, [](const DenoisedSegment& s) { return !s.outcome.converged; });
+        take.segments, [](const DenoisedSegment& s) { return fell_short(s.outcome); });
     if (failed == 0) continue;
     fmt::print(stderr,
                "moclean: {}: {} of {} segments did not converge; raise --max-iterations or "
@@ -112,6 +120,7 @@ ExitCode run(DenoiseOptions options) {
   if (!options.json.empty()) write_json(options.json, json_record(options, opened.report, report));
   if (options.reports()) print_report(report, job.plan, opened.report);
   warn_of_unobserved(report.takes);
+  tell_of_changes(report.takes);
   return warn_if_not_converged(report.takes);
 }
 

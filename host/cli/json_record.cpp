@@ -43,6 +43,14 @@ Json method_record(const DenoiseOptions& options) {
   Json record;
   record["name"] = chain.size() == 1 ? name_of(chain.front()) : to_string(chain);
   record["specification"] = to_string(chain);
+  for (const Step& step : chain)
+    if (const auto* automatic = std::get_if<Automatic>(&step)) {
+      const auto chosen = [](const auto& names, auto value) {
+        return std::string(names[static_cast<std::size_t>(value)]);
+      };
+      record["reject"] = chosen(Automatic::rejections, automatic->reject);
+      record["smooth"] = chosen(Automatic::choices, automatic->smooth);
+    }
   const LowRank* method = first_low_rank(chain);
   if (!method) return record;
   record["segmentation"] = segmentation_record(method->segmentation);
@@ -56,9 +64,11 @@ Json segment_record(const DenoisedSegment& segment) {
   record["first_frame"] = segment.first_frame;
   record["frames"] = segment.frames;
   record["iterations"] = segment.outcome.iterations;
-  record["rank"] = segment.outcome.rank;
-  record["residual"] = segment.outcome.residual;
-  record["converged"] = segment.outcome.converged;
+  const SegmentOutcome& outcome = segment.outcome;
+  const bool iterates = !outcome.fixed_steps;
+  record["rank"] = outcome.rank ? Json(*outcome.rank) : Json(nullptr);
+  record["residual"] = iterates ? Json(outcome.residual) : Json(nullptr);
+  record["converged"] = iterates ? Json(outcome.converged) : Json(nullptr);
   return record;
 }
 
@@ -69,6 +79,21 @@ Json agreement_record(const Verification& verification) {
   record["largest_difference"] = verification.largest_difference;
   record["same_iterations"] = verification.agreement.iterations_apart == 0;
   record["same_rank"] = verification.agreement.ranks_apart == 0;
+  return record;
+}
+
+// null where nothing was moved, or there is no body to compare with.
+Json change_record(const Change& changed) {
+  Json record;
+  record["corrected"] = changed.corrected;
+  record["filled"] = changed.filled;
+  record["largest"] = nullptr;
+  if (!changed.largest) return record;
+  const bool sized = changed.body_size > 0;
+  record["largest"] = {{"distance", changed.largest->distance},
+                       {"share_of_body", sized ? Json(changed.largest_share()) : Json(nullptr)},
+                       {"joint", changed.largest->joint},
+                       {"frame", changed.largest->frame}};
   return record;
 }
 
@@ -83,6 +108,7 @@ Json take_record(const TakeReport& take) {
   record["frames_per_second"] = take.frames_per_second();
   for (std::size_t s = 0; s < take.status.size(); ++s)
     record["samples"][sample_status_names[s]] = take.status[s];
+  record["changed"] = change_record(take.changed);
   record["segments"] = Json::array();
   for (const DenoisedSegment& segment : take.segments)
     record["segments"].push_back(segment_record(segment));

@@ -166,12 +166,15 @@ class Run {
     auto results = solved_by_device(group, expected);
     for (std::size_t i = 0; i < results.size(); ++i)
       report_.takes.push_back({.file = job_.files[group.first + i],
+                               .unit = results[i].clip.unit,
                                .frames = results[i].clip.frames(),
                                .columns = results[i].clip.samples.cols(),
                                .read_seconds = group.read_seconds[i],
                                .solve_seconds = results[i].solve_seconds,
                                .write_seconds = 0,
                                .status = {},
+                               .changed = {},
+                               .tells_trust = results[i].trusted.has_value(),
                                .segments = results[i].segments,
                                .unobserved = results[i].unobserved,
                                .verification = {},
@@ -191,6 +194,7 @@ class Run {
     Clip status = sample_status(take, result);
     TakeReport& report = report_.takes[group.first + i];
     report.status = count_status(status);
+    report.changed = change_of(take, result);
     report.truth = compared(group, i, result.clip);
     if (!options.mask.empty()) masks_[group.first + i] = std::move(status);
   }
@@ -236,6 +240,8 @@ class Run {
   std::vector<Denoised> solved_by_device(const TakeGroup& group, Index expected_segments) {
     try {
       return solver_.solve(group, expected_segments, reader_.at_end());
+    } catch (const TakeError& error) {
+      throw FileError(job_.files[group.first + error.take()], error.problem());
     } catch (const DeviceError& error) {
       if (group.clips.size() > 1) throw;
       throw DeviceError(fmt::format("{}: {}", job_.files[group.first].string(), error.what()));

@@ -16,6 +16,25 @@ double TakeReport::frames_per_second() const {
   return solve_seconds > 0 ? static_cast<double>(frames) / solve_seconds : 0;
 }
 
+bool is_changed_much(const TakeReport& take) {
+  constexpr double many = 0.02, far = 0.05;
+  return (take.tells_trust && take.changed.corrected > many) || take.changed.largest_share() > far;
+}
+
+std::string changed_line(const TakeReport& take) {
+  const Change& changed = take.changed;
+  std::string line =
+      fmt::format("{}: changed much: {:.2g} % of the samples corrected, {:.2g} % filled",
+                  take.file.string(), 100 * changed.corrected, 100 * changed.filled);
+  if (!changed.largest) return line;
+  line += fmt::format("; farthest: {} by {:.3g}{} in frame {}", changed.largest->joint,
+                      changed.largest->distance, take.unit.empty() ? "" : " " + take.unit,
+                      changed.largest->frame);
+  if (changed.body_size > 0)
+    line += fmt::format(" ({:.2g} % of the body's size)", 100 * changed.largest_share());
+  return line;
+}
+
 std::string unobserved_line(const TakeReport& take) {
   return fmt::format("{}: never observed, left missing: {}", take.file.string(),
                      fmt::join(take.unobserved, ", "));

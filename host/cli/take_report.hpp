@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "moclean/denoise/agreement.hpp"
+#include "moclean/denoise/change.hpp"
 #include "moclean/denoise/denoiser.hpp"
 
 namespace moclean::cli {
@@ -29,12 +30,15 @@ struct TruthReport {
 /// One take of a run of `moclean denoise`.
 struct TakeReport {
   std::filesystem::path file;
+  std::string unit;  ///< of length, as the file states it; empty where it does not
   Index frames = 0;
   Index columns = 0;
   double read_seconds = 0;
   double solve_seconds = 0;
   double write_seconds = 0;
   std::array<Index, 4> status{};          ///< samples of each SampleStatus
+  Change changed;                         ///< of what is written
+  bool tells_trust = false;               ///< the method says which samples it rejected
   std::vector<DenoisedSegment> segments;  ///< first_frame counts from the first frame used
   std::vector<std::string> unobserved;    ///< columns without a sample, left missing
   std::optional<Verification> verification;
@@ -63,6 +67,14 @@ struct RunReport {
 
 /// What --verify found, in one line that starts with the file's name.
 std::string agreement_line(const TakeReport& take);
+
+/// Whether a take was changed so much that its user should hear of it: more than 2 % of its samples
+/// corrected by a method that tells which it rejected (others change nearly all), or a joint moved
+/// by more than 5 % of the body's size.
+bool is_changed_much(const TakeReport& take);
+
+/// How much a take was changed, likewise.
+std::string changed_line(const TakeReport& take);
 
 /// Which columns were never observed, likewise; the take has some.
 std::string unobserved_line(const TakeReport& take);

@@ -129,7 +129,8 @@ bool is_close(const Solution& tested, const Solution& expected) {
     const SegmentOutcome &own = tested.segments[b], &other = expected.segments[b];
     found.iterations_apart =
         std::max(found.iterations_apart, std::abs(own.iterations - other.iterations));
-    found.ranks_apart = std::max(found.ranks_apart, std::abs(own.rank - other.rank));
+    found.ranks_apart =
+        std::max(found.ranks_apart, std::abs(own.rank.value_or(0) - other.rank.value_or(0)));
   }
   return within(found);
 }

@@ -54,6 +54,50 @@ TEST(Vanished, FindsJointsAtTheOrigin) {
   EXPECT_EQ(lost.count(), 1);
 }
 
+TEST(Vanished, LeavesAJointThatIsAlwaysAtTheOrigin) {
+  Matrix samples = test::swinging_limbs(60, 6);
+  samples.middleCols<3>(0).setZero();
+  samples.row(10).segment<3>(6).setZero();
+
+  const BodyTake take = body_take(samples, 120);
+
+  EXPECT_EQ(still_joints(take), (std::vector<bool>{true, false, false, false, false, false}));
+  EXPECT_EQ(vanished(take).count(), 1);
+}
+
+TEST(Vanished, LeavesAJointThatIsAtTheOriginForMostOfTheTime) {
+  Matrix samples = test::swinging_limbs(60, 6);
+  samples.block<40, 3>(0, 6).setZero();
+  EXPECT_FALSE(vanished(body_take(samples, 120)).any());
+
+  samples.block<40, 3>(0, 6) = test::swinging_limbs(60, 6).block<40, 3>(0, 6);
+  samples.block<30, 3>(0, 6).setZero();  // half of it
+  EXPECT_EQ(vanished(body_take(samples, 120)).count(), 30);
+}
+
+TEST(Vanished, LeavesAJointThatMovesToTheOriginAndOn) {
+  // At 0.1 a frame through the origin, where it rests for five frames.
+  Matrix samples = test::swinging_limbs(60, 6);
+  for (Index i = 0; i < 60; ++i) {
+    const Index way = i < 30 ? i - 30 : std::max<Index>(0, i - 34);
+    samples.row(i).segment<3>(6) << 0.1 * static_cast<double>(way), 0, 0;
+  }
+
+  EXPECT_FALSE(vanished(body_take(samples, 120)).any());
+}
+
+TEST(Vanished, LeavesThePoseAtTheOriginThatABodyBeginsWith) {
+  // Frame 0 has the root at the origin and every bone as long as ever.
+  Matrix samples = test::swinging_limbs(60, 6);
+  const Eigen::RowVector3d root = samples.row(0).head<3>();
+  for (Index j = 0; j < 6; ++j) samples.row(0).segment<3>(3 * j) -= root;
+
+  EXPECT_FALSE(vanished(body_take(samples, 120)).any());
+  samples.row(0).segment<3>(3) += root;
+  samples.row(0).segment<3>(6) += root;  // neither of its children is where it should be
+  EXPECT_EQ(vanished(body_take(samples, 120)).count(), 1);
+}
+
 TEST(Vanished, FindsZerosUnderNoise) {
   Matrix samples = test::swinging_limbs(200, 8);
   Random random(3);

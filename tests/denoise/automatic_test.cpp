@@ -142,6 +142,126 @@ TEST(Automatic, ScalesWithTheUnitOfLength) {
   }
 }
 
+TEST(Automatic, ShiftsWithTheOrigin) {
+  const Clip noisy = with_bursts(limbs(300), 20);
+  const Denoised expected = cleaned(noisy);
+
+  Clip moved = noisy;
+  moved.samples.array() += 1e4;
+  const Denoised result = cleaned(moved);
+
+  EXPECT_LE((result.clip.samples.array() - 1e4 - expected.clip.samples.array()).abs().maxCoeff(),
+            1e-9 * 1e4);
+  EXPECT_TRUE((*result.trusted == *expected.trusted).all());
+}
+
+TEST(Automatic, PlaysBackward) {
+  const Clip noisy = with_bursts(limbs(300), 20);
+  const Matrix expected = cleaned(noisy).clip.samples;
+
+  Clip reversed = noisy;
+  reversed.samples = noisy.samples.colwise().reverse();
+  const Matrix result = cleaned(reversed).clip.samples.colwise().reverse();
+
+  EXPECT_LE(test::relative_difference(result, expected), 1e-9);
+}
+
+TEST(Automatic, DoesNotDependOnTheOrderOfJoints) {
+  const Clip noisy = with_bursts(limbs(300), 20);
+  const Matrix expected = cleaned(noisy).clip.samples;
+  const auto reordered = [](const Matrix& samples) {
+    Matrix result(samples.rows(), samples.cols());
+    for (Index j = 0; j < 8; ++j) result.middleCols<3>(3 * j) = samples.middleCols<3>(3 * (7 - j));
+    return result;
+  };
+
+  Clip other = noisy;
+  other.samples = reordered(noisy.samples);
+
+  EXPECT_LE(test::relative_difference(reordered(cleaned(other).clip.samples), expected), 1e-9);
+}
+
+// Without the joints that stand still, the same bits.
+TEST(Automatic, JointsAtRestStayAndHaveNoSay) {
+  const Clip moving = with_bursts(limbs(300), 20);
+  Clip take = moving;
+  take.samples = Matrix::Zero(300, 24 + 3 * 20);
+  take.samples.leftCols(24) = moving.samples;
+  take.samples.middleCols<3>(24).rowwise() = Eigen::RowVector3d(0.1, 2.3, 4.7);
+  take.samples.block<40, 3>(100, 24).setConstant(nan);
+  take.columns = default_column_names(84);
+
+  const Denoised result = cleaned(take), expected = cleaned(moving);
+
+  EXPECT_TRUE(test::same_bits(result.clip.samples.leftCols(24), expected.clip.samples));
+  EXPECT_TRUE((result.clip.samples.rightCols(57).array() == 0).all());
+  EXPECT_TRUE((result.clip.samples.col(25).array() == 2.3).all());
+  EXPECT_TRUE(result.trusted->rightCols(57).all());
+
+  take.samples.leftCols(24).rowwise() = moving.samples.row(0).eval();
+  const Denoised still = cleaned(take);
+  EXPECT_TRUE((still.clip.samples.col(3).array() == moving.samples(0, 3)).all());
+  EXPECT_TRUE(still.segments.empty());
+}
+
+TEST(Automatic, RejectsNothingWhereItIsTold) {
+  Clip noisy = with_bursts(limbs(300), 20);
+  noisy.samples.block(200, 12, 30, 3).setZero();
+
+  const Denoised none = cleaned(noisy, {.reject = Rejection::off});
+  const Denoised gentle = cleaned(noisy, {.reject = Rejection::gentle});
+  const Denoised usual = cleaned(noisy, {.reject = Rejection::on});
+
+  EXPECT_TRUE(none.trusted->all());
+  EXPECT_TRUE((none.outliers.samples.array() == 0).all());
+  EXPECT_FALSE(gentle.trusted->block(200, 12, 30, 3).any());
+  EXPECT_GT(gentle.trusted->count(), usual.trusted->count());
+  EXPECT_LT(gentle.trusted->count(), none.trusted->count());
+}
+
+TEST(Automatic, LeavesTrustedSamplesAloneWhereItIsNotToSmooth) {
+  Clip noisy = with_bursts(limbs(300), 20);
+  Random random(8);
+  for (double& x : noisy.samples.reshaped()) x += 0.01 * random.normal();
+  noisy.samples.block(250, 3, 20, 3).setConstant(nan);
+  const Denoised smoothed = cleaned(noisy);
+
+  const Denoised result = cleaned(noisy, {.smooth = Smoothing::off});
+
+  const Mask& trusted = *result.trusted;
+  EXPECT_TRUE((trusted == *smoothed.trusted).all());
+  EXPECT_GT(trusted.count(), trusted.size() / 2);
+  EXPECT_TRUE((!trusted || result.clip.samples.array() == noisy.samples.array()).all());
+  EXPECT_TRUE((trusted || result.clip.samples.array() == smoothed.clip.samples.array()).all());
+}
+
+TEST(Automatic, RefusesAMatrixThatIsNoMotion) {
+  Random random(4);
+  Clip matrix = limbs(200);
+  for (double& x : matrix.samples.reshaped()) x = random.normal();
+  ReferenceBackend backend;
+  AutomaticDenoiser denoiser({}, backend);
+
+  try {
+    denoiser.denoise(std::vector{limbs(60), matrix});
+    FAIL();
+  } catch (const TakeError& error) {
+    EXPECT_EQ(error.take(), 1);
+    EXPECT_THAT(error.problem(), testing::HasSubstr("rpca"));
+    EXPECT_THAT(error.what(), testing::StartsWith("take 1: its rows are not smooth in time"));
+  }
+}
+
+TEST(Automatic, ClaimsNeitherRankNorConvergence) {
+  const SegmentOutcome outcome = cleaned(limbs(60)).segments.at(0).outcome;
+
+  EXPECT_FALSE(outcome.rank);
+  EXPECT_FALSE(outcome.converged);
+  EXPECT_TRUE(outcome.fixed_steps);
+  EXPECT_FALSE(fell_short(outcome));
+  EXPECT_GT(outcome.iterations, 0);
+}
+
 TEST(Automatic, WindowsLeaveNoSeam) {
   const Clip truth = test::synthetic_walk(700);
   Clip noisy = truth;

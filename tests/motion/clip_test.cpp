@@ -31,6 +31,21 @@ TEST(Joints, LeaveOtherColumnsAlone) {
                           FieldsAre("a.y", 5, 1), FieldsAre("b.z", 6, 1), FieldsAre("c.x", 7, 1)));
 }
 
+TEST(Joints, AreWrittenInManyWays) {
+  const std::vector<std::vector<std::string>> ways = {
+      {"hip_x", "hip_y", "hip_z"}, {"hip.X", "hip.Y", "hip.Z"}, {"hip-X", "hip-Y", "hip-Z"},
+      {"hip x", "hip y", "hip z"}, {"hip:X", "hip:Y", "hip:Z"}, {"X.hip", "Y.hip", "Z.hip"}};
+  for (const auto& columns : ways)
+    EXPECT_THAT(joints(clip_with(columns)), ElementsAre(FieldsAre("hip", 0, 3))) << columns[0];
+
+  const std::vector<std::vector<std::string>> others = {{"hip_x", "hip.y", "hip_z"},
+                                                        {"x_hip", "hip_y", "hip_z"},
+                                                        {"x", "y", "z"},
+                                                        {"_x", "_y", "_z"},
+                                                        {"hipx", "hipy", "hipz"}};
+  for (const auto& columns : others) EXPECT_EQ(joints(clip_with(columns)).size(), 3) << columns[0];
+}
+
 TEST(Joints, CoverEveryColumnOnceInAnyOrderOfAxes) {
   const Clip clip = clip_with({"hip.z", "hip.y", "hip.x", "hip.y", "hip.z"});
 

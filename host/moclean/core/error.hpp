@@ -25,6 +25,23 @@ class ShapeError : public Error {
   using Error::Error;
 };
 
+/// One of several takes that a method cannot take. The message names its place, `take 2: problem`;
+/// who knows a better name, that of its file, has the problem alone.
+class TakeError : public ShapeError {
+ public:
+  TakeError(std::size_t take, const std::string& problem)
+      : ShapeError(std::string("take ").append(std::to_string(take)).append(": ").append(problem)),
+        take_(take),
+        problem_(problem) {}
+
+  std::size_t take() const { return take_; }  ///< among those that were given, from 0
+  const std::string& problem() const { return problem_; }
+
+ private:
+  std::size_t take_;
+  std::string problem_;
+};
+
 /// An OpenCL device that is missing, lacks a capability, or reported a failure.
 class DeviceError : public Error {
  public:

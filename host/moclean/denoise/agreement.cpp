@@ -53,7 +53,8 @@ Agreement agreement(const Denoised& tested, const Denoised& reference) {
     const SegmentOutcome& expected = reference.segments[s].outcome;
     result.iterations_apart =
         std::max(result.iterations_apart, std::abs(own.iterations - expected.iterations));
-    result.ranks_apart = std::max(result.ranks_apart, std::abs(own.rank - expected.rank));
+    result.ranks_apart =
+        std::max(result.ranks_apart, std::abs(own.rank.value_or(0) - expected.rank.value_or(0)));
   }
   return result;
 }

@@ -12,9 +12,11 @@
 #include "moclean/body/cuts.hpp"
 #include "moclean/body/jump_flags.hpp"
 #include "moclean/body/rigid_flags.hpp"
-#include "moclean/body/vanished.hpp"
 #include "moclean/core/error.hpp"
 #include "moclean/core/parallel.hpp"
+#include "moclean/denoise/moving_part.hpp"
+#include "moclean/denoise/sample_status.hpp"
+#include "moclean/denoise/smooth_in_time.hpp"
 #include "moclean/denoise/unobserved.hpp"
 #include "moclean/segment/spans.hpp"
 #include "moclean/solve/matrix_normal_statistics.hpp"
@@ -29,6 +31,8 @@ constexpr double noise_of_distance = 1.4;  // of two samples, about sqrt 2
 constexpr double carried_seconds = 0.067;  // shortest gap through which joints are carried
 constexpr double soft_floor = 2e-3;        // deviation of distances that is steady, share of size
 constexpr Index shortest_window = 8;
+constexpr double gentle_factor = 2;     // of the thresholds
+constexpr double no_threshold = 1e150;  // its square is finite, and above that of any residual
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 double rate_of(const Clip& take) { return take.frame_rate > 0 ? take.frame_rate : usual_rate; }
@@ -81,8 +85,6 @@ void spare_hopeless(const Mask& seen, const Spans& spans, Mask& bad) {
 
 // Takes out what the body says is wrong, and cuts where another motion begins.
 void look_at_body(double frame_rate, const Automatic& method, Prepared& prepared) {
-  const BodyTake first = body_take(prepared.samples, frame_rate);
-  drop(vanished(first), prepared.samples);
   BodyTake take = body_take(prepared.samples, frame_rate);
   JointKnowledge& known = prepared.knowledge;
   known.size = body_size(take);
@@ -105,6 +107,8 @@ void look_at_body(double frame_rate, const Automatic& method, Prepared& prepared
     }
     flags.bad = flags.bad || jumps;
   }
+  if (method.reject == Rejection::off || method.reject == Rejection::gentle)
+    flags.bad.setConstant(false);
   spare_hopeless(take.seen, prepared.spans, flags.bad);
   drop(flags.bad, prepared.samples);
   known.vouched = flags.vouched && !flags.bad;
@@ -133,10 +137,15 @@ JointKnowledge cut(const JointKnowledge& known, const Span& span) {
 }
 
 // What the windows of one solve have in common: columns, and frames or columns per joint.
-MatrixNormal matrix_normal_of(const Clip& take) {
-  return {.joint_columns = has_body(take) ? 3 : 1,
-          .median_frames = odd_frames(median_seconds, rate_of(take)),
-          .lag_frames = std::max<Index>(1, std::lround(lag_seconds * rate_of(take)))};
+MatrixNormal matrix_normal_of(const Clip& take, Rejection reject) {
+  MatrixNormal method{.joint_columns = has_body(take) ? 3 : 1,
+                      .median_frames = odd_frames(median_seconds, rate_of(take)),
+                      .lag_frames = std::max<Index>(1, std::lround(lag_seconds * rate_of(take)))};
+  for (double* threshold : {&method.soft_first, &method.soft_last, &method.hard}) {
+    if (reject == Rejection::gentle) *threshold *= gentle_factor;
+    if (reject == Rejection::off) *threshold = no_threshold;
+  }
+  return method;
 }
 
 // Takes whose windows share one solve.
@@ -145,14 +154,16 @@ struct Group {
   std::vector<std::size_t> takes;
 };
 
-// By columns and by what the method depends on, in order of the takes.
-std::vector<Group> group_alike(std::span<const Clip> takes) {
+// By columns and by what the method depends on, in order of the takes; those that stand still are
+// in none.
+std::vector<Group> group_alike(std::span<const MovingPart> parts, Rejection reject) {
   std::vector<Group> groups;
-  for (std::size_t t = 0; t < takes.size(); ++t) {
-    MatrixNormal method = matrix_normal_of(takes[t]);
+  for (std::size_t t = 0; t < parts.size(); ++t) {
+    if (parts[t].columns.empty()) continue;
+    MatrixNormal method = matrix_normal_of(parts[t].clip, reject);
     const auto alike = [&](const Group& group) {
       return group.method == method &&
-             takes[group.takes.front()].samples.cols() == takes[t].samples.cols();
+             parts[group.takes.front()].columns.size() == parts[t].columns.size();
     };
     const auto found = std::ranges::find_if(groups, alike);
     if (found == groups.end())
@@ -185,10 +196,11 @@ void require_samples(const Clip& take, std::size_t index) {
   for (Index f = 0; f < take.frames(); ++f)
     for (Index c = 0; c < take.samples.cols(); ++c)
       if (std::isinf(take.samples(f, c)))
-        throw ShapeError(fmt::format("take {}: infinite at frame {}, column {}", index, f,
-                                     take.columns[static_cast<std::size_t>(c)]));
+        throw TakeError(index, fmt::format("infinite at frame {}, column {}", f,
+                                           take.columns[static_cast<std::size_t>(c)]));
 }
 
+// The take without what it says of its motion.
 Clip like(const Clip& take, Matrix samples) {
   return {.samples = std::move(samples),
           .columns = take.columns,
@@ -196,21 +208,40 @@ Clip like(const Clip& take, Matrix samples) {
           .unit = take.unit};
 }
 
+// What moves in each take. Throws for the first in which nothing moves as motion does.
+std::vector<MovingPart> moving_parts(std::span<const Clip> takes, const Automatic& method,
+                                     int jobs) {
+  const bool find_lost = method.body == BodyRules::on && method.reject != Rejection::off;
+  std::vector<MovingPart> parts(takes.size());
+  std::vector<char> smooth(takes.size());
+  for_each_index(static_cast<Index>(takes.size()), jobs, [&](Index t) {
+    const auto i = static_cast<std::size_t>(t);
+    parts[i] = moving_part(takes[i], find_lost);
+    smooth[i] = smooth_in_time(parts[i]);
+  });
+  if (const auto found = std::ranges::find(smooth, 0); found != smooth.end())
+    throw TakeError(static_cast<std::size_t>(found - smooth.begin()),
+                    "its rows are not smooth in time (a frame tells nothing of the next), and auto "
+                    "is for motion; for a matrix that is no motion use rpca (--method rpca)");
+  return parts;
+}
+
 Denoised result_of(const Clip& take, const Spans& spans, const Solution& solution, Index segment) {
-  const Matrix motion = blend_spans(solution.low_rank, spans, segment);
   const Mask observed = !take.samples.array().isNaN();
-  const Mask trusted = observed && blend_spans(*solution.trusted, spans, segment).array() >= 0.5;
-  const Mask gross = observed && !trusted && !motion.array().isNaN();
   Denoised result;
-  result.outliers = like(take, gross.select(take.samples - motion, 0));
-  result.clip = like(take, motion);
+  result.clip = like(take, blend_spans(solution.low_rank, spans, segment));
   result.sigma = like(take, blend_spans(*solution.deviation, spans, segment));
-  result.trusted = trusted;
+  result.trusted = observed && blend_spans(*solution.trusted, spans, segment).array() >= 0.5;
   for (std::size_t s = 0; s < spans.size(); ++s)
     result.segments.push_back({spans[s].first, spans[s].frames(),
                                solution.segments[static_cast<std::size_t>(segment) + s]});
-  leave_unobserved(take, result);
   return result;
+}
+
+// The result of a take of which nothing moves.
+Denoised at_rest(const Clip& take) {
+  const Clip none{.samples = Matrix(take.frames(), 0), .columns = {}, .frame_rate = 0, .unit = ""};
+  return {.clip = none, .outliers = none, .sigma = none, .trusted = Mask(take.frames(), 0)};
 }
 
 }  // namespace
@@ -234,10 +265,11 @@ std::vector<Denoised> AutomaticDenoiser::denoise(std::span<const Clip> takes,
   using Clock = std::chrono::steady_clock;
   const Clock::time_point begin = Clock::now();
   for (std::size_t t = 0; t < takes.size(); ++t) require_samples(takes[t], t);
+  const std::vector<MovingPart> parts = moving_parts(takes, method_, jobs_);
   std::vector<Prepared> prepared(takes.size());
   for_each_index(static_cast<Index>(takes.size()), jobs_, [&](Index t) {
     const auto i = static_cast<std::size_t>(t);
-    prepared[i] = prepare(takes[i], method_);
+    prepared[i] = prepare(parts[i].clip, method_);
   });
   Progress all;
   double frames = 0;
@@ -252,19 +284,24 @@ std::vector<Denoised> AutomaticDenoiser::denoise(std::span<const Clip> takes,
     };
 
   std::vector<Denoised> results(takes.size());
-  for (Group& group : group_alike(takes)) {
+  for (Group& group : group_alike(parts, method_.reject)) {
     const SegmentBatch data = stack(prepared, group);
     const Solution solution = backend_.solve(data, std::move(group.method), part);
     all.finished += data.segments();
     Index segment = 0;
     for (const std::size_t t : group.takes) {
-      results[t] = result_of(takes[t], prepared[t].spans, solution, segment);
+      results[t] = result_of(parts[t].clip, prepared[t].spans, solution, segment);
       segment += static_cast<Index>(prepared[t].spans.size());
     }
   }
   const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
-  for (std::size_t t = 0; t < takes.size(); ++t)
+  for (std::size_t t = 0; t < takes.size(); ++t) {
+    if (parts[t].columns.empty()) results[t] = at_rest(takes[t]);
+    put_back(takes[t], parts[t], results[t]);
+    leave_unobserved(takes[t], results[t]);
+    if (method_.smooth == Smoothing::off) keep_observed(takes[t], results[t]);
     results[t].solve_seconds = seconds * static_cast<double>(takes[t].frames()) / frames;
+  }
   return results;
 }
 

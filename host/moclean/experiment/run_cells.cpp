@@ -131,7 +131,7 @@ class MethodRun {
                       .frames = estimate.clip.frames()};
     result.figures["seconds"] = estimate.solve_seconds;
     result.unconverged = std::ranges::count_if(
-        estimate.segments, [](const DenoisedSegment& s) { return !s.outcome.converged; });
+        estimate.segments, [](const DenoisedSegment& s) { return fell_short(s.outcome); });
     return result;
   }
 

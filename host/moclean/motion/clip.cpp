@@ -1,6 +1,7 @@
 #include "moclean/motion/clip.hpp"
 
 #include <array>
+#include <cctype>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -11,19 +12,44 @@ namespace moclean {
 namespace {
 
 constexpr std::array<std::string_view, 3> axes = {".x", ".y", ".z"};
+constexpr std::string_view separators = "._- :";
 
-// Length of N if the three names from `first` on read `N.x N.y N.z`, else npos.
-std::size_t joint_name_length(const std::vector<std::string>& columns, std::size_t first) {
-  if (first + axes.size() > columns.size()) return std::string::npos;
-  const std::string_view x = columns[first];
-  if (!x.ends_with(axes[0])) return std::string::npos;
-  const std::string_view name = x.substr(0, x.size() - axes[0].size());
-  for (std::size_t i = 1; i < axes.size(); ++i) {
-    const std::string_view column = columns[first + i];
-    if (column.size() != x.size() || !column.starts_with(name) || !column.ends_with(axes[i]))
-      return std::string::npos;
+// A column's name taken apart.
+struct ChannelName {
+  std::string_view joint;
+  std::string_view separator;
+  char axis = 0;  // x, y or z; 0 if the name tells of none
+  bool axis_first = false;
+};
+
+char axis_of(char letter) {
+  const auto small = static_cast<char>(std::tolower(static_cast<unsigned char>(letter)));
+  return small >= 'x' && small <= 'z' ? small : char{0};
+}
+
+ChannelName split(std::string_view name) {
+  if (name.size() < 3) return {};
+  const auto separates = [](char c) { return separators.find(c) != std::string_view::npos; };
+  const std::size_t last = name.size() - 1;
+  if (axis_of(name[last]) && separates(name[last - 1]))
+    return {name.substr(0, last - 1), name.substr(last - 1, 1), axis_of(name[last]), false};
+  if (axis_of(name[0]) && separates(name[1]))
+    return {name.substr(2), name.substr(1, 1), axis_of(name[0]), true};
+  return {};
+}
+
+// The joint of the three columns from `first` on, if they are its x, y and z, in this order; else
+// empty.
+std::string_view joint_name(const std::vector<std::string>& columns, std::size_t first) {
+  if (first + axes.size() > columns.size()) return {};
+  const ChannelName x = split(columns[first]);
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    const ChannelName own = split(columns[first + i]);
+    if (own.axis != static_cast<char>('x' + static_cast<char>(i)) || own.joint != x.joint ||
+        own.separator != x.separator || own.axis_first != x.axis_first)
+      return {};
   }
-  return name.size();
+  return x.joint;
 }
 
 }  // namespace
@@ -31,10 +57,10 @@ std::size_t joint_name_length(const std::vector<std::string>& columns, std::size
 std::vector<Joint> joints(const Clip& clip) {
   std::vector<Joint> found;
   for (std::size_t column = 0; column < clip.columns.size();) {
-    const std::size_t length = joint_name_length(clip.columns, column);
-    const Index width = length == std::string::npos ? 1 : 3;
-    // substr takes npos as "the whole name".
-    found.push_back({clip.columns[column].substr(0, length), static_cast<Index>(column), width});
+    const std::string_view name = joint_name(clip.columns, column);
+    const Index width = name.empty() ? 1 : 3;
+    found.push_back({name.empty() ? clip.columns[column] : std::string(name),
+                     static_cast<Index>(column), width});
     column += static_cast<std::size_t>(width);
   }
   return found;

@@ -27,8 +27,9 @@ struct Joint {
   Index columns = 3;  ///< 3, or 1 for a channel that stands alone
 };
 
-/// Splits the columns of a clip into joints. Three neighbours named `N.x N.y N.z` are joint `N`;
-/// any other column is a joint of its own.
+/// Splits the columns of a clip into joints. Three neighbours named `N.x N.y N.z` are joint `N`,
+/// as are those of other tools: `N_x`, `N-x`, `N:x`, `N x`, `N.X`, `x.N`. Any other column is a
+/// joint of its own.
 std::vector<Joint> joints(const Clip& clip);
 
 /// Names for `count` columns of a file that has none: `joint0.x joint0.y joint0.z joint1.x ...`

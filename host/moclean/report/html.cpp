@@ -56,12 +56,14 @@ Json record(const ReportFigures& figures) {
 }
 
 Json record(const DenoisedSegment& segment) {
+  const SegmentOutcome& outcome = segment.outcome;
+  const bool iterates = !outcome.fixed_steps;
   return {{"first", segment.first_frame},
           {"frames", segment.frames},
-          {"iterations", segment.outcome.iterations},
-          {"rank", segment.outcome.rank},
-          {"residual", segment.outcome.residual},
-          {"converged", segment.outcome.converged}};
+          {"iterations", outcome.iterations},
+          {"rank", outcome.rank ? Json(*outcome.rank) : Json(nullptr)},
+          {"residual", iterates ? Json(outcome.residual) : Json(nullptr)},
+          {"converged", iterates ? Json(outcome.converged) : Json(nullptr)}};
 }
 
 void require_parents(const ReportTake& take, std::size_t joint_count) {

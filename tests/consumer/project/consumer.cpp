@@ -18,6 +18,7 @@ int main() {
 
   const double cleaned = solution.low_rank.segment(0)(7, 2);
   const double error = solution.sparse.segment(0)(7, 2);
-  std::printf("%g = %g + %g, rank %d\n", 53.0, cleaned, error, solution.segments[0].rank);
+  std::printf("%g = %g + %g, rank %d\n", 53.0, cleaned, error,
+              solution.segments[0].rank.value_or(0));
   return std::abs(cleaned - 3) < 1e-4 && std::abs(error - 50) < 1e-4 ? 0 : 1;
 }

@@ -43,8 +43,10 @@
   report.showSegments = (take, state) => {
     byId("segments").hidden = take.segments.length === 0;
     const columns = ["first frame", "frames", "iterations", "rank", "residual", "converged"];
-    const rows = take.segments.map((segment) => [segment.first, segment.frames, segment.iterations, segment.rank,
-                                                 segment.residual, segment.converged ? "yes" : "no"]);
+    // null: the method has no such thing
+    const rows = take.segments.map((segment) => [segment.first, segment.frames, segment.iterations, segment.rank ?? "-",
+                                                 segment.residual ?? "-",
+                                                 segment.converged === null ? "-" : segment.converged ? "yes" : "no"]);
     const rowOf = (row) => {
       const line = plainRow(row);
       if (row[5] === "no") line.className = "bad";

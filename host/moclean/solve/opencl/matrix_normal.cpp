@@ -235,8 +235,11 @@ void MatrixNormalSolver::finish(Run& run, Index first, Solution& solution) {
     solution.trusted->segment(b) = window.trusted().cast<double>();
     solution.deviation->segment(b) = window.deviation();
     solution.sparse.segment(b) = window.rejected(solution.low_rank.segment(b));
-    solution.segments[static_cast<std::size_t>(b)] = {
-        .iterations = iterations[i], .rank = 0, .residual = 0, .converged = true};
+    solution.segments[static_cast<std::size_t>(b)] = {.iterations = iterations[i],
+                                                      .rank = {},
+                                                      .residual = 0,
+                                                      .converged = false,
+                                                      .fixed_steps = true};
   }
 }
 

@@ -87,7 +87,7 @@ void SpectralSolver::weigh(const SegmentBatch& data, Index first, Index last, co
     std::ranges::copy(weights, f.begin() + segment.vector);
     outcome.iterations = 1;
     outcome.rank = static_cast<int>(std::ranges::count_if(weights, [](double w) { return w > 0; }));
-    terms.back() = std::max(1, outcome.rank);
+    terms.back() = std::max(1, *outcome.rank);
   }
   m.f.write(f);
   m.terms.write(terms);

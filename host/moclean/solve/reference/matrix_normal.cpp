@@ -113,7 +113,8 @@ MatrixNormalSolution solve(const ConstMatrixRef& data, const MatrixNormal& metho
                            const std::stop_token& stop, Index segment) {
   MatrixNormalWindow window(data, method, segment);
   MatrixNormalSolution solution;
-  solution.outcome.converged = true;
+  solution.outcome = {
+      .iterations = 0, .rank = {}, .residual = 0, .converged = false, .fixed_steps = true};
   Matrix S = Matrix::Zero(window.rows(), window.columns());
   if (!window.trivial()) {
     const Matrix ones = Matrix::Ones(window.rows(), window.columns());

@@ -1,0 +1,103 @@
+#include "moclean/denoise/moving_part.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+
+#include "support/matrix.hpp"
+
+namespace moclean {
+namespace {
+
+using testing::ElementsAre;
+
+constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+
+// A joint that moves, one that does not, and a column of each kind.
+Clip small_take() {
+  Clip take{.samples = Matrix(3, 8),
+            .columns = {"a.x", "a.y", "a.z", "b.x", "b.y", "b.z", "time", "weight"},
+            .frame_rate = 60,
+            .unit = "mm"};
+  take.samples << 1, 7, 2, 0, 0, 0, 10, 70,  //
+      2, 7, nan, 0, 0, 0, 20, 70,            //
+      4, 7, 5, 0, nan, 0, 30, nan;
+  return take;
+}
+
+// What a method might say of the part.
+Denoised result_for(const MovingPart& part, const Matrix& motion) {
+  Clip clip = part.clip;
+  clip.samples = motion;
+  Clip sigma = clip;
+  sigma.samples.setConstant(0.5);
+  return {
+      .clip = clip, .outliers = {}, .sigma = sigma, .trusted = !part.clip.samples.array().isNaN()};
+}
+
+TEST(MovingPart, LeavesOutWhatStandsStillAndCentresTheRest) {
+  const MovingPart part = moving_part(small_take(), true);
+
+  EXPECT_THAT(part.columns, ElementsAre(0, 1, 2, 6));
+  EXPECT_THAT(part.clip.columns, ElementsAre("a.x", "a.y", "a.z", "time"));
+  EXPECT_THAT(part.still, ElementsAre(false, true, false, true, true, true, false, true));
+  EXPECT_THAT(part.medians, ElementsAre(2, 7, 3.5, 0, 0, 0, 20, 70));
+  EXPECT_THAT(part.centre, ElementsAre(2, 7, 3.5, 2, 7, 3.5, 20, 70));
+  EXPECT_THAT(part.clip.samples.row(0), ElementsAre(-1, 0, -1.5, -10));
+  EXPECT_TRUE(std::isnan(part.clip.samples(1, 2)));
+  EXPECT_EQ(part.clip.frame_rate, 60);
+}
+
+TEST(MovingPart, KeepsDistancesOfJoints) {
+  Clip take = small_take();
+  take.samples.block(0, 3, 3, 3) << 5, 5, 5, 6, 5, 5, 8, 6, 5;
+
+  const MovingPart part = moving_part(take, true);
+
+  EXPECT_THAT(part.centre.head(3), ElementsAre((2 + 6) / 2., (7 + 5) / 2., (3.5 + 5) / 2));
+  const Matrix apart = part.clip.samples.middleCols(0, 3) - part.clip.samples.middleCols(3, 3);
+  EXPECT_THAT(apart.row(0), ElementsAre(1 - 5, 7 - 5, 2 - 5));
+}
+
+TEST(MovingPart, TakesZerosForLostOnlyWhereItIsTold) {
+  Clip take = small_take();
+  take.samples = Matrix(5, 8);
+  for (Index i = 0; i < 5; ++i)
+    take.samples.row(i) << 5, 5, 5 + 0.1 * static_cast<double>(i), 0, 0, 0, 1, 1;
+  take.samples.row(2).head(3).setZero();
+
+  EXPECT_TRUE(moving_part(take, true).clip.samples.row(2).head(3).array().isNaN().all());
+  EXPECT_FALSE(moving_part(take, false).clip.samples.array().isNaN().any());
+}
+
+TEST(PutBack, KeepsUnchangedSamplesToTheLastBitAndStillColumns) {
+  Clip take = small_take();
+  take.samples.col(0) << 0.1, 0.7, 1e4 / 3;  // minus 0.7 and plus 0.7 are not the same again
+  const MovingPart part = moving_part(take, true);
+  Matrix motion = part.clip.samples;
+  motion(1, 0) += 0.25;
+  motion(1, 2) = 0.5;  // was missing
+  Denoised result = result_for(part, motion);
+  (*result.trusted)(1, 0) = false;
+
+  put_back(take, part, result);
+
+  EXPECT_TRUE(result.clip.samples(0, 0) == 0.1 && result.clip.samples(2, 0) == 1e4 / 3);
+  EXPECT_EQ(result.clip.samples(1, 0), 0.25 + 0.7);
+  EXPECT_EQ(result.outliers.samples(1, 0), 0.7 - (0.25 + 0.7));
+  EXPECT_EQ(result.outliers.samples.cwiseAbs().sum(), std::abs(result.outliers.samples(1, 0)));
+  EXPECT_EQ(result.clip.samples(1, 2), 4);
+  EXPECT_TRUE((result.clip.samples.col(7).array() == 70).all());
+  EXPECT_TRUE((result.clip.samples.middleCols(3, 3).array() == 0).all());
+  EXPECT_FALSE((*result.trusted)(1, 0) || (*result.trusted)(2, 4) || (*result.trusted)(2, 7));
+  EXPECT_TRUE((*result.trusted)(0, 4) && (*result.trusted)(0, 7));
+  EXPECT_EQ(result.sigma->samples(0, 7), 0);
+  EXPECT_TRUE(std::isnan(result.sigma->samples(2, 7)));
+  EXPECT_EQ(result.sigma->samples(0, 6), 0.5);
+  EXPECT_EQ(result.clip.columns, take.columns);
+  EXPECT_EQ(result.clip.unit, "mm");
+}
+
+}  // namespace
+}  // namespace moclean
