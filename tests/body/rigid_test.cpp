@@ -49,19 +49,19 @@ Matrix displaced(Index joint, Index first, Index last, const Eigen::RowVector3d&
 }
 
 TEST(SteadyCore, IsTheShortestIntervalThatHoldsAThird) {
-  std::vector<WeighedDistance> values;
-  for (int i = 0; i < 15; ++i) values.push_back({5 + 0.01 * i});
-  for (int i = 0; i < 15; ++i) values.push_back({20 + 3. * i});
+  std::vector<double> values;
+  for (int i = 0; i < 15; ++i) values.push_back(5 + 0.01 * i);
+  for (int i = 0; i < 15; ++i) values.push_back(20 + 3. * i);
 
   const Core core = steady_core(values);
 
   EXPECT_GE(core.centre, 5.05 - 1e-9);  // ten steps of 0.01 within 5 .. 5.14
   EXPECT_LE(core.centre, 5.09 + 1e-9);
-  EXPECT_NEAR(core.spread, 0.045 / 0.4307, 1e-9);  // the ten values themselves: 0.09 wide
+  EXPECT_NEAR(core.spread, 0.05 / 0.4307, 1e-9);
 }
 
 TEST(SteadyCore, KnowsNothingFromTwentyValues) {
-  std::vector<WeighedDistance> values(20, {1.});
+  const std::vector<double> values(20, 1.);
 
   EXPECT_TRUE(std::isinf(steady_core(values).spread));
 }
@@ -204,7 +204,9 @@ TEST(RigidBody, IsNotLearnedFromStandingStill) {
   const Learned learned = learned_of_noisy(noisy(samples, 0.01), 0.01);
 
   for (const RigidEdge& edge : learned.body.edges)
-    if (edge.hard) EXPECT_EQ(edge.first, (edge.second - 1) / 2);
+    if (edge.hard) {
+      EXPECT_EQ(edge.first, (edge.second - 1) / 2);
+    }
   EXPECT_FALSE(learned.flags().bad.any());
 }
 

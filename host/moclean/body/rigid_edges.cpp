@@ -152,12 +152,18 @@ Core steady_core(std::vector<WeighedDistance>& distances) {
   double held = 0;
   for (std::size_t first = 0, last = 0; last < distances.size(); ++last) {
     held += distances[last].weight;
-    while (held - distances[first].weight >= third) held -= distances[first++].weight;
+    while (held - distances[first].weight > third) held -= distances[first++].weight;
     const double low = distances[first].value, high = distances[last].value;
-    if (held < third || high - low >= 2 * deviations_of_third * core.spread) continue;
+    if (held <= third || high - low >= 2 * deviations_of_third * core.spread) continue;
     core = {(low + high) / 2, (high - low) / 2 / deviations_of_third};
   }
   return core;
+}
+
+Core steady_core(const std::vector<double>& distances) {
+  std::vector<WeighedDistance> alike;
+  for (const double d : distances) alike.push_back({d});
+  return steady_core(alike);
 }
 
 RigidBody learn_rigid_body(const BodyTake& take, double smallest) {

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double cut = 5, vote = 0.4;
 constexpr Index turning_runs = 4;
-constexpr double mean_deviations = 4;
+constexpr double mean_deviations = 4, least_of_exact = 0.01;
 constexpr double noise_of_distance = 1.4;  // of two samples, about sqrt 2
 constexpr double weight_of_exact = 1.6;  // alone against a single other one it is not outvoted
 constexpr double slow_seconds = 0.092, dense = 2e-3, least_spread = 1e-4;  // the last two: of size
@@ -128,8 +128,7 @@ void blame_all(const RigidBody& body, const Distances& d, const Limits& limits, 
 // Running medians in the place of the distances, and limits that fit them.
 Limits slow_down(const BodyTake& take, double size, Distances& d) {
   Limits limits(static_cast<std::size_t>(d.values.cols()));
-  std::vector<double> channel(static_cast<std::size_t>(take.frames()));
-  std::vector<WeighedDistance> seen;
+  std::vector<double> channel(static_cast<std::size_t>(take.frames())), seen;
   for (Index e = 0; e < d.values.cols(); ++e) {
     Eigen::Map<Eigen::VectorXd> values(channel.data(), take.frames());
     values = d.values.col(e);
@@ -138,7 +137,7 @@ Limits slow_down(const BodyTake& take, double size, Distances& d) {
     d.values.col(e) = values;
     seen.clear();
     for (Index i = 0; i < take.frames(); ++i)
-      if (d.both(i, e)) seen.push_back({values(i)});
+      if (d.both(i, e)) seen.push_back(values(i));
     const Core core = steady_core(seen);
     limits.centre(e) = core.centre;
     limits.limit(e) = cut * std::max(core.spread, least_spread * size);
@@ -208,12 +207,14 @@ Mask spare(const RigidBody& body, const Distances& d, const Limits& limits, Inde
         if (seen.count() < (edge.exact ? shortest : turning_runs * shortest) ||
             static_cast<double>(run.count()) < spared_share * count)
           return;
-        if (!edge.exact) {
-          const double mean = seen.select(off.segment(first, last - first), 0).sum() / count;
-          if (std::abs(mean) > mean_deviations * limits.limit(k) / cut / std::sqrt(count)) return;
-          turned.col(j).segment(first, last - first) =
-              turned.col(j).segment(first, last - first) || run;
-        }
+        const double mean = seen.select(off.segment(first, last - first), 0).sum() / count;
+        const double deviation = limits.limit(k) / cut;  // of one distance
+        const double usual = edge.exact ? std::max(edge.spread, least_of_exact * deviation)
+                                        : deviation / std::sqrt(count);
+        const bool holds = std::abs(mean) <= mean_deviations * usual;
+        if (!holds && !edge.exact) return;
+        auto turns = turned.col(j).segment(first, last - first);
+        if (holds) turns = turns || run;
         auto flags = bad.col(j).segment(first, last - first);
         flags = flags && !run;
       });

@@ -20,6 +20,7 @@
 #include "moclean/denoise/unobserved.hpp"
 #include "moclean/segment/spans.hpp"
 #include "moclean/solve/matrix_normal_statistics.hpp"
+#include "moclean/solve/rounding_step.hpp"
 
 namespace moclean {
 namespace {
@@ -89,8 +90,9 @@ void look_at_body(double frame_rate, const Automatic& method, Prepared& prepared
   JointKnowledge& known = prepared.knowledge;
   known.size = body_size(take);
   if (known.size <= 0) return;
-  const double smallest =
-      std::max(noise_of_distance * dense_noise_level(prepared.samples), edge_floor * known.size);
+  const double noise =
+      std::max(dense_noise_level(prepared.samples), rounding_deviation(prepared.samples));
+  const double smallest = std::max(noise_of_distance * noise, edge_floor * known.size);
   const RigidBody body = learn_rigid_body(take, smallest);
   for (const RigidEdge& edge : body.edges)
     if (edge.hard || edge.exact)

@@ -11,12 +11,15 @@
 
 #include "moclean/core/linear_fill.hpp"
 #include "moclean/core/order_statistics.hpp"
+#include "moclean/solve/matrix_normal_prior.hpp"
 #include "moclean/solve/matrix_normal_statistics.hpp"
+#include "moclean/solve/rounding_step.hpp"
 
 namespace moclean {
 namespace {
 
 constexpr double soft_ridge = 2e-2, hard_ridge = 1e-3;  // share of the mean eigenvalue of Q
+constexpr double least_prior = 10, noise_prior = 50;    // frames that the prior of Q counts for
 constexpr double noise_floor_share = 1.25e-5;  // least sigma of the hard steps, of the size
 constexpr double soft_floor_share = 0.1;       // of the soft ones, of that
 constexpr double dense_noise = 10. / 6;        // sigma^2 over mean e from which smoothing is undone
@@ -53,10 +56,13 @@ MatrixNormalWindow::MatrixNormalWindow(const ConstMatrixRef& data, const MatrixN
   observed_ = seen.cast<double>();
   const double size = known_->size > 0 ? known_->size : column_scale(data);
   noise_floor_ = noise_floor_share * size;
-  sigma_ = std::max(dense_noise_level(data), soft_floor_share * noise_floor_);
+  rounding_ = rounding_deviation(data);
+  sigma_ = std::max({dense_noise_level(data), rounding_, soft_floor_share * noise_floor_});
   weights_ = observed_;
   find_drawn();
   target_ = data_;
+  if (method.joint_columns == 3 && columns() % 3 == 0 && !trivial())
+    nearness_ = nearness_of(all_filled());
 }
 
 void MatrixNormalWindow::find_drawn() {
@@ -121,13 +127,30 @@ double MatrixNormalWindow::least_spectrum() const {
   return least + std::numeric_limits<double>::min();
 }
 
-std::optional<Eigen::VectorXd> MatrixNormalWindow::growth() const {
+// Share of the power that smoothing left per eigenvector of the Q of the step before, where noise
+// matters.
+std::optional<Eigen::VectorXd> MatrixNormalWindow::kept() const {
   if (step_ == 0) return {};
   const double variance = square(sigma_), least = least_spectrum();
   if (!hard() && variance <= dense_noise * spectrum_.mean()) return {};
   const double noise = hard() ? variance / share_kept() : variance;
-  return spectrum_.unaryExpr(
-      [&](double e) { return 1 / std::sqrt(kept_power(noise, std::max(e, least))); });
+  return spectrum_.unaryExpr([&](double e) { return kept_power(noise, std::max(e, least)); });
+}
+
+std::optional<Eigen::VectorXd> MatrixNormalWindow::growth() const {
+  std::optional<Eigen::VectorXd> kept = this->kept();
+  if (kept) *kept = kept->cwiseSqrt().cwiseInverse();
+  return kept;
+}
+
+// The frames tell of a direction as much as smoothing left of it.
+void MatrixNormalWindow::add_prior(Eigen::Ref<Matrix> square) const {
+  if (nearness_.size() == 0) return;
+  const std::optional<Eigen::VectorXd> kept = this->kept();
+  const double share = kept ? kept->mean() : 1;
+  const double known = static_cast<double>(frames_ - 2) * share_kept() * share;
+  const double prior = least_prior + noise_prior * (1 - share);
+  draw_to_nearness(nearness_, prior / (prior + known), square);
 }
 
 Eigen::VectorXd MatrixNormalWindow::inverse_spectrum(const Eigen::VectorXd& eigenvalues) {
@@ -247,9 +270,10 @@ void MatrixNormalWindow::estimate_noise(const ConstMatrixRef& motion) {
     for (const double e : spectrum_) kept += kept_power(noise, std::max(e, least));
     const double fitted = static_cast<double>(frames_) * weights_.mean() * kept / weights_.sum();
     const double free = std::sqrt(std::max(1 - fitted, 0.02));
-    sigma_ = std::max(deviation_per_mad * median(residuals) / free, noise_floor_);
+    sigma_ = std::max({deviation_per_mad * median(residuals) / free, rounding_, noise_floor_});
   } else if (2 * step_ >= method_->soft_steps && residuals.size() > 100) {
-    sigma_ = std::max(deviation_per_mad * median(residuals), soft_floor_share * noise_floor_);
+    sigma_ = std::max(
+        {deviation_per_mad * median(residuals), rounding_, soft_floor_share * noise_floor_});
   }
   ++step_;
 }
@@ -274,12 +298,17 @@ std::vector<double> MatrixNormalWindow::filled(Index j) const {
   return channel;
 }
 
-Matrix MatrixNormalWindow::filled() const {
+Matrix MatrixNormalWindow::all_filled() const {
   Matrix result(frames_, columns());
   for (Index j = 0; j < columns(); ++j) {
     const std::vector<double> channel = filled(j);
     result.col(j) = Eigen::Map<const Eigen::VectorXd>(channel.data(), frames_);
   }
+  return result;
+}
+
+Matrix MatrixNormalWindow::filled() const {
+  Matrix result = all_filled();
   leave_unobserved(result);
   return result;
 }

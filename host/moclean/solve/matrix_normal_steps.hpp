@@ -12,7 +12,7 @@ namespace moclean {
 
 /// What the steps of MatrixNormal do to one window beside its linear algebra: statistics, weights,
 /// noise. The same bits on every backend. A step is
-///   A = accelerations(S), times growth() if there is one;   A'A = Z' diag(e) Z
+///   A = accelerations(S), times growth() if there is one;   add_prior(A'A) = Z' diag(e) Z
 ///   R = Z' diag(inverse_spectrum(e)) Z, about Q^-1
 ///   weigh(S, diag R);   S = argmin sum weights() (target() - S)^2 + tr(Delta S R (Delta S)')
 ///   estimate_noise(S)
@@ -51,7 +51,11 @@ class MatrixNormalWindow {
   /// undo what smoothing took from it. Empty where noise does not matter yet.
   std::optional<Eigen::VectorXd> growth() const;
 
-  /// 1 / (e + ridge), given the eigenvalues of A'A.
+  /// A'A, of which the upper triangle is read, drawn to what joints near each other do: alike. The
+  /// less is known of the accelerations, the more.
+  void add_prior(Eigen::Ref<Matrix> square) const;
+
+  /// 1 / (e + ridge), given the eigenvalues of that.
   Eigen::VectorXd inverse_spectrum(const Eigen::VectorXd& eigenvalues);
 
   /// Weights and targets from the residuals, given diag R.
@@ -92,7 +96,9 @@ class MatrixNormalWindow {
   bool hard() const { return step_ >= method_->soft_steps; }
   double share_kept() const;
   double least_spectrum() const;
+  std::optional<Eigen::VectorXd> kept() const;
   std::vector<double> filled(Index j) const;
+  Matrix all_filled() const;
   void leave_unobserved(Matrix& result) const;
   Matrix energies(const ConstMatrixRef& motion) const;
   void weigh_softly(const Matrix& energy);
@@ -108,7 +114,8 @@ class MatrixNormalWindow {
   Matrix data_, observed_;  // D also holds what is drawn
   Mask present_;            // observed or drawn
   std::vector<Drawn> drawn_;
-  double noise_floor_;
+  Matrix nearness_;                // of joints; empty where columns are no joints
+  double noise_floor_, rounding_;  // least sigma: of the data's size, and what rounding makes
   double sigma_;
   int step_ = 0;
   Matrix weights_, solve_weights_, target_;  // W [frames x columns], W / v, what S is drawn to

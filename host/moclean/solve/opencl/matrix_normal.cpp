@@ -86,6 +86,12 @@ struct MatrixNormalSolver::Run {
             Eigen::InnerStride<>(segment.order_pitch + 1)};
   }
 
+  MatrixView square_of(std::vector<double>& squares, std::int32_t b) const {
+    const SegmentRecord& segment = batch.segment(b);
+    return {squares.data() + segment.square, segment.order, segment.order,
+            Eigen::OuterStride<>(segment.order_pitch)};
+  }
+
   SegmentBatch host;  // stacked matrices on their way
   Batch batch;
   ConjugateGradients::Memory gradients;
@@ -132,10 +138,19 @@ void MatrixNormalSolver::accelerate(Run& run) {
   run.batch.select(all);
 }
 
+// What is expected of Q to it, on the host.
+void MatrixNormalSolver::add_prior(Run& run) {
+  std::vector<double> Q(run.batch.square_size());
+  run.Q.read(Q);
+  for (const std::int32_t b : run.batch.active()) run.window(b).add_prior(run.square_of(Q, b));
+  run.Q.write(Q);
+}
+
 // Q and R from the motion in run.host.
 void MatrixNormalSolver::learn(Run& run) {
   accelerate(run);
   products_.gram(run.batch, run.gradients.product, run.Q);
+  add_prior(run);
   eigen_(run.batch, run.Q, run.Z, run.eigenvalues);
   std::vector<double> values(run.batch.vector_size());
   run.eigenvalues.read(values);

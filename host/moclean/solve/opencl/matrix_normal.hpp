@@ -33,6 +33,7 @@ class MatrixNormalSolver {
 
   void first_smoothing(Run& run, const MatrixNormal& method);
   void accelerate(Run& run);
+  void add_prior(Run& run);
   void learn(Run& run);
   void weigh(Run& run);
   void smooth(Run& run, const MatrixNormal& method);

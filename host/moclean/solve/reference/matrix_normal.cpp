@@ -65,8 +65,8 @@ struct Spectrum {
   }
 };
 
-Spectrum spectrum_of(const Matrix& a) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(a.transpose() * a);
+Spectrum spectrum_of(const Matrix& square) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(square);
   return {eigen.eigenvalues(), eigen.eigenvectors()};
 }
 
@@ -127,7 +127,9 @@ MatrixNormalSolution solve(const ConstMatrixRef& data, const MatrixNormal& metho
       if (stop.stop_requested()) throw Cancelled();
       Matrix A = window.accelerations(S);
       if (const auto growth = window.growth()) A *= Q.weighted(*growth);
-      Q = spectrum_of(A);
+      Matrix square = A.transpose() * A;
+      window.add_prior(square);
+      Q = spectrum_of(square);
       const Matrix R = Q.weighted(window.inverse_spectrum(Q.values));
       window.weigh(S, R.diagonal());
       solution.outcome.iterations += smooth(window.target(), window.weights(), R,
