@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "moclean/body/carried.hpp"
 #include "moclean/body/cuts.hpp"
+#include "moclean/body/fill_gaps.hpp"
 #include "moclean/body/jump_flags.hpp"
 #include "moclean/body/rigid_flags.hpp"
 #include "moclean/body/vanished.hpp"
@@ -26,7 +26,7 @@ constexpr double usual_rate = 120;                             // Hz, where none
 constexpr double median_seconds = 0.058, lag_seconds = 0.067;  // of the first guess
 constexpr double edge_floor = 1e-4;        // least spread of a distance, share of the body's size
 constexpr double noise_of_distance = 1.4;  // of two samples, about sqrt 2
-constexpr double carried_seconds = 0.067;  // shortest gap through which joints are carried
+constexpr double filled_seconds = 0.067;   // shortest gap that the body fills
 constexpr double soft_floor = 2e-3;        // deviation of distances that is steady, share of size
 constexpr Index shortest_window = 8;
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
@@ -109,10 +109,10 @@ void look_at_body(double frame_rate, const Automatic& method, Prepared& prepared
   drop(flags.bad, prepared.samples);
   known.vouched = flags.vouched && !flags.bad;
   take.seen = take.seen && !flags.bad;
-  Carried carried = carry(take, std::max(smallest, soft_floor * known.size),
-                          odd_frames(carried_seconds, frame_rate));
-  known.drawn = std::move(carried.positions);
-  known.variance = std::move(carried.variance);
+  Fills fills = fill_gaps(take, std::max(smallest, soft_floor * known.size),
+                          odd_frames(filled_seconds, frame_rate));
+  known.drawn = std::move(fills.positions);
+  known.variance = std::move(fills.variance);
 }
 
 Prepared prepare(const Clip& take, const Automatic& method) {
@@ -196,7 +196,17 @@ Clip like(const Clip& take, Matrix samples) {
           .unit = take.unit};
 }
 
-Denoised result_of(const Clip& take, const Spans& spans, const Solution& solution, Index segment) {
+// A fill that may be a body's size away is none.
+void leave_unknown(const Clip& take, double size, Denoised& result) {
+  if (size <= 0) return;
+  const Mask unknown = take.samples.array().isNaN() && result.sigma->samples.array() > size;
+  result.clip.samples = unknown.select(missing, result.clip.samples);
+  result.sigma->samples = unknown.select(missing, result.sigma->samples);
+}
+
+Denoised result_of(const Clip& take, const Prepared& prepared, const Solution& solution,
+                   Index segment) {
+  const Spans& spans = prepared.spans;
   const Matrix motion = blend_spans(solution.low_rank, spans, segment);
   const Mask observed = !take.samples.array().isNaN();
   const Mask trusted = observed && blend_spans(*solution.trusted, spans, segment).array() >= 0.5;
@@ -206,6 +216,7 @@ Denoised result_of(const Clip& take, const Spans& spans, const Solution& solutio
   result.clip = like(take, motion);
   result.sigma = like(take, blend_spans(*solution.deviation, spans, segment));
   result.trusted = trusted;
+  leave_unknown(take, prepared.knowledge.size, result);
   for (std::size_t s = 0; s < spans.size(); ++s)
     result.segments.push_back({spans[s].first, spans[s].frames(),
                                solution.segments[static_cast<std::size_t>(segment) + s]});
@@ -258,7 +269,7 @@ std::vector<Denoised> AutomaticDenoiser::denoise(std::span<const Clip> takes,
     all.finished += data.segments();
     Index segment = 0;
     for (const std::size_t t : group.takes) {
-      results[t] = result_of(takes[t], prepared[t].spans, solution, segment);
+      results[t] = result_of(takes[t], prepared[t], solution, segment);
       segment += static_cast<Index>(prepared[t].spans.size());
     }
   }

@@ -22,7 +22,7 @@ constexpr double soft_floor_share = 0.1;       // of the soft ones, of that
 constexpr double dense_noise = 10. / 6;        // sigma^2 over mean e from which smoothing is undone
 constexpr double most_stiffness = 1e3;
 constexpr double clip_deviations = 5, near_deviations = 3;
-constexpr double drawn_weight = 0.03;  // of drawn samples: the errors in a gap are one slow curve
+constexpr double drawn_weight = 0.3;  // of drawn samples: the errors in a gap are one slow curve
 constexpr double length_weight = 0.1, length_reach = 4;  // of drawn joints; frames
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
