@@ -79,6 +79,27 @@ void spare_hopeless(const Mask& seen, const Spans& spans, Mask& bad) {
     }
 }
 
+// Fills gaps of each of the motions that begin at the frames `cuts` from that alone.
+void fill_from_body(const BodyTake& take, std::vector<Index> cuts, double floor,
+                    JointKnowledge& known) {
+  known.drawn = Matrix::Zero(take.frames(), 3 * take.joints());
+  known.variance =
+      Matrix::Constant(take.frames(), take.joints(), std::numeric_limits<double>::infinity());
+  Index first = 0;
+  cuts.push_back(take.frames());
+  for (const Index last : cuts) {
+    const Index frames = last - first;
+    const Fills fills = fill_gaps({take.positions.middleRows(first, frames),
+                                   take.seen.middleRows(first, frames), take.frame_rate},
+                                  floor, odd_frames(filled_seconds, take.frame_rate));
+    if (!fills.empty()) {
+      known.drawn.middleRows(first, frames) = fills.positions;
+      known.variance.middleRows(first, frames) = fills.variance;
+    }
+    first = last;
+  }
+}
+
 // Takes out what the body says is wrong, and cuts where another motion begins.
 void look_at_body(double frame_rate, const Automatic& method, Prepared& prepared) {
   const BodyTake first = body_take(prepared.samples, frame_rate);
@@ -94,14 +115,15 @@ void look_at_body(double frame_rate, const Automatic& method, Prepared& prepared
     if (edge.hard || edge.exact)
       known.links.push_back({edge.first, edge.second, edge.length, edge.hard, edge.exact});
   RigidFlags flags = judge(take, body, known.size, smallest);
+  std::vector<Index> other_motions;
   if (body.is_rigid()) {
     const Mask trusted = flags.consistent && !flags.bad && take.seen;
     std::vector<SuddenSteps> steps = sudden_steps(take, trusted, known.size);
     Mask jumps = jump_flags(take, steps, body);
-    if (const auto found = cuts(trusted, steps, body, jumps); !found.empty()) {
-      for (const Index frame : found) forget_steps_into(frame, steps);
+    if (other_motions = cuts(trusted, steps, body, jumps); !other_motions.empty()) {
+      for (const Index frame : other_motions) forget_steps_into(frame, steps);
       jumps = jump_flags(take, steps, body);
-      prepared.spans = windows(method, take.frames(), found);
+      prepared.spans = windows(method, take.frames(), other_motions);
     }
     flags.bad = flags.bad || jumps;
   }
@@ -109,10 +131,8 @@ void look_at_body(double frame_rate, const Automatic& method, Prepared& prepared
   drop(flags.bad, prepared.samples);
   known.vouched = flags.vouched && !flags.bad;
   take.seen = take.seen && !flags.bad;
-  Fills fills = fill_gaps(take, std::max(smallest, soft_floor * known.size),
-                          odd_frames(filled_seconds, frame_rate));
-  known.drawn = std::move(fills.positions);
-  known.variance = std::move(fills.variance);
+  fill_from_body(take, std::move(other_motions), std::max(smallest, soft_floor * known.size),
+                 known);
 }
 
 Prepared prepare(const Clip& take, const Automatic& method) {

@@ -84,6 +84,7 @@ class MatrixNormalWindow {
   struct Drawn {
     Index row, column;
     double variance;
+    double weight;  // share of the precision with which it counts
   };
 
   bool hard() const { return step_ >= method_->soft_steps; }
@@ -96,6 +97,7 @@ class MatrixNormalWindow {
   void weigh_hard(const Matrix& energy, const ConstMatrixRef& motion);
   void reinstate(Mask& good) const;
   void find_drawn();
+  void find_drawn(Index j, Index first, Index last);
   void draw();
   void build_on_lengths(const ConstMatrixRef& motion);
   std::vector<double> residuals(const ConstMatrixRef& motion) const;
