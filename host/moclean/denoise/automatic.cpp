@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "moclean/body/carried.hpp"
 #include "moclean/body/cuts.hpp"
+#include "moclean/body/fill_gaps.hpp"
 #include "moclean/body/jump_flags.hpp"
 #include "moclean/body/rigid_flags.hpp"
 #include "moclean/core/error.hpp"
@@ -29,7 +29,7 @@ constexpr double usual_rate = 120;                             // Hz, where none
 constexpr double median_seconds = 0.058, lag_seconds = 0.067;  // of the first guess
 constexpr double edge_floor = 1e-4;        // least spread of a distance, share of the body's size
 constexpr double noise_of_distance = 1.4;  // of two samples, about sqrt 2
-constexpr double carried_seconds = 0.067;  // shortest gap through which joints are carried
+constexpr double filled_seconds = 0.067;   // shortest gap that the body fills
 constexpr double soft_floor = 2e-3;        // deviation of distances that is steady, share of size
 constexpr Index shortest_window = 8;
 constexpr double gentle_factor = 2;     // of the thresholds
@@ -84,6 +84,27 @@ void spare_hopeless(const Mask& seen, const Spans& spans, Mask& bad) {
     }
 }
 
+// Fills gaps of each of the motions that begin at the frames `cuts` from that alone.
+void fill_from_body(const BodyTake& take, std::vector<Index> cuts, double floor,
+                    JointKnowledge& known) {
+  known.drawn = Matrix::Zero(take.frames(), 3 * take.joints());
+  known.variance =
+      Matrix::Constant(take.frames(), take.joints(), std::numeric_limits<double>::infinity());
+  Index first = 0;
+  cuts.push_back(take.frames());
+  for (const Index last : cuts) {
+    const Index frames = last - first;
+    const Fills fills = fill_gaps({take.positions.middleRows(first, frames),
+                                   take.seen.middleRows(first, frames), take.frame_rate},
+                                  floor, odd_frames(filled_seconds, take.frame_rate));
+    if (!fills.empty()) {
+      known.drawn.middleRows(first, frames) = fills.positions;
+      known.variance.middleRows(first, frames) = fills.variance;
+    }
+    first = last;
+  }
+}
+
 // Takes out what the body says is wrong, and cuts where another motion begins.
 void look_at_body(double frame_rate, const Automatic& method, Prepared& prepared) {
   BodyTake take = body_take(prepared.samples, frame_rate);
@@ -98,14 +119,15 @@ void look_at_body(double frame_rate, const Automatic& method, Prepared& prepared
     if (edge.hard || edge.exact)
       known.links.push_back({edge.first, edge.second, edge.length, edge.hard, edge.exact});
   RigidFlags flags = judge(take, body, known.size, smallest);
+  std::vector<Index> other_motions;
   if (body.is_rigid()) {
     const Mask trusted = flags.consistent && !flags.bad && take.seen;
     std::vector<SuddenSteps> steps = sudden_steps(take, trusted, known.size);
     Mask jumps = jump_flags(take, steps, body);
-    if (const auto found = cuts(trusted, steps, body, jumps); !found.empty()) {
-      for (const Index frame : found) forget_steps_into(frame, steps);
+    if (other_motions = cuts(trusted, steps, body, jumps); !other_motions.empty()) {
+      for (const Index frame : other_motions) forget_steps_into(frame, steps);
       jumps = jump_flags(take, steps, body);
-      prepared.spans = windows(method, take.frames(), found);
+      prepared.spans = windows(method, take.frames(), other_motions);
     }
     flags.bad = flags.bad || jumps;
   }
@@ -115,10 +137,8 @@ void look_at_body(double frame_rate, const Automatic& method, Prepared& prepared
   drop(flags.bad, prepared.samples);
   known.vouched = flags.vouched && !flags.bad;
   take.seen = take.seen && !flags.bad;
-  Carried carried = carry(take, std::max(smallest, soft_floor * known.size),
-                          odd_frames(carried_seconds, frame_rate));
-  known.drawn = std::move(carried.positions);
-  known.variance = std::move(carried.variance);
+  fill_from_body(take, std::move(other_motions), std::max(smallest, soft_floor * known.size),
+                 known);
 }
 
 Prepared prepare(const Clip& take, const Automatic& method) {
@@ -228,12 +248,23 @@ std::vector<MovingPart> moving_parts(std::span<const Clip> takes, const Automati
   return parts;
 }
 
-Denoised result_of(const Clip& take, const Spans& spans, const Solution& solution, Index segment) {
+// A fill that may be a body's size away is none.
+void leave_unknown(const Clip& take, double size, Denoised& result) {
+  if (size <= 0) return;
+  const Mask unknown = take.samples.array().isNaN() && result.sigma->samples.array() > size;
+  result.clip.samples = unknown.select(missing, result.clip.samples);
+  result.sigma->samples = unknown.select(missing, result.sigma->samples);
+}
+
+Denoised result_of(const Clip& take, const Prepared& prepared, const Solution& solution,
+                   Index segment) {
+  const Spans& spans = prepared.spans;
   const Mask observed = !take.samples.array().isNaN();
   Denoised result;
   result.clip = like(take, blend_spans(solution.low_rank, spans, segment));
   result.sigma = like(take, blend_spans(*solution.deviation, spans, segment));
   result.trusted = observed && blend_spans(*solution.trusted, spans, segment).array() >= 0.5;
+  leave_unknown(take, prepared.knowledge.size, result);
   for (std::size_t s = 0; s < spans.size(); ++s)
     result.segments.push_back({spans[s].first, spans[s].frames(),
                                solution.segments[static_cast<std::size_t>(segment) + s]});
@@ -292,7 +323,7 @@ std::vector<Denoised> AutomaticDenoiser::denoise(std::span<const Clip> takes,
     all.finished += data.segments();
     Index segment = 0;
     for (const std::size_t t : group.takes) {
-      results[t] = result_of(parts[t].clip, prepared[t].spans, solution, segment);
+      results[t] = result_of(parts[t].clip, prepared[t], solution, segment);
       segment += static_cast<Index>(prepared[t].spans.size());
     }
   }

@@ -25,7 +25,8 @@ constexpr double soft_floor_share = 0.1;       // of the soft ones, of that
 constexpr double dense_noise = 10. / 6;        // sigma^2 over mean e from which smoothing is undone
 constexpr double most_stiffness = 1e3;
 constexpr double clip_deviations = 5, near_deviations = 3;
-constexpr double drawn_weight = 0.03;  // of drawn samples: the errors in a gap are one slow curve
+// Of drawn samples: the errors in a gap are one slow curve, and in a short one S knows better.
+constexpr double drawn_weight_per_lag = 0.03, most_drawn_weight = 0.3;
 constexpr double length_weight = 0.1, length_reach = 4;  // of drawn joints; frames
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
@@ -68,14 +69,25 @@ MatrixNormalWindow::MatrixNormalWindow(const ConstMatrixRef& data, const MatrixN
 void MatrixNormalWindow::find_drawn() {
   present_ = observed_.array() > 0;
   if (known_->drawn.size() == 0) return;
-  for (Index i = 0; i < frames_; ++i)
-    for (Index j = 0; j < columns(); ++j) {
-      const double variance = known_->variance(i, j / method_->joint_columns);
-      if (observed_(i, j) > 0 || !std::isfinite(variance)) continue;
-      drawn_.push_back({i, j, variance});
-      present_(i, j) = true;
-      data_(i, j) = known_->drawn(i, j);
+  for (Index j = 0; j < columns(); ++j)
+    for (Index i = 0; i < frames_; ++i) {
+      const Index first = i;
+      while (i < frames_ && observed_(i, j) <= 0) ++i;
+      find_drawn(j, first, i);
     }
+}
+
+// Those of a gap.
+void MatrixNormalWindow::find_drawn(Index j, Index first, Index last) {
+  const double lags = static_cast<double>(last - first) / static_cast<double>(method_->lag_frames);
+  const double weight = std::min(drawn_weight_per_lag * lags, most_drawn_weight);
+  for (Index i = first; i < last; ++i) {
+    const double variance = known_->variance(i, j / method_->joint_columns);
+    if (!std::isfinite(variance)) continue;
+    drawn_.push_back({i, j, variance, weight});
+    present_(i, j) = true;
+    data_(i, j) = known_->drawn(i, j);
+  }
 }
 
 // Second differences over a lag of h frames tell the acceleration under dense noise: their variance
@@ -189,7 +201,7 @@ void MatrixNormalWindow::weigh(const ConstMatrixRef& motion,
 // Draws S to where missing samples should be.
 void MatrixNormalWindow::draw() {
   for (const Drawn& sample : drawn_) {
-    const double weight = drawn_weight / (square(sigma_) + sample.variance);
+    const double weight = sample.weight / (square(sigma_) + sample.variance);
     double& all = solve_weights_(sample.row, sample.column);
     double& target = target_(sample.row, sample.column);
     target = (all * target + weight * data_(sample.row, sample.column)) / (all + weight);

@@ -88,6 +88,7 @@ class MatrixNormalWindow {
   struct Drawn {
     Index row, column;
     double variance;
+    double weight;  // share of the precision with which it counts
   };
 
   bool vouched(Index frame, Index column) const {
@@ -104,6 +105,7 @@ class MatrixNormalWindow {
   void weigh_softly(const Matrix& energy);
   void weigh_hard(const Matrix& energy, const ConstMatrixRef& motion);
   void find_drawn();
+  void find_drawn(Index j, Index first, Index last);
   void draw();
   void build_on_lengths(const ConstMatrixRef& motion);
   std::vector<double> residuals(const ConstMatrixRef& motion) const;

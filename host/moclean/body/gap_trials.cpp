@@ -1,0 +1,228 @@
+#include "moclean/body/gap_trials.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <Eigen/Cholesky>
+
+namespace moclean {
+namespace {
+
+constexpr std::array<double, 4> reaches = {0.05, 0.2, 0.7, 20};
+constexpr double shrinkage = 0.05;  // of the errors' covariance to its diagonal
+
+struct Prediction {
+  Frames frames;  // the edges come first
+  Candidates made;
+};
+
+Prediction predicted(const Gap& gap, const Frames& inner, const Predictor& predict) {
+  Prediction found{edges(gap), {}};
+  found.frames.insert(found.frames.end(), inner.begin(), inner.end());
+  found.made = predict(gap, found.frames);
+  return found;
+}
+
+// How much of the misses at the first edge a frame `away` from it and `beyond` from the other has.
+double share_of_miss(double away, double beyond, double reach) {
+  const double whole = away + beyond;
+  // sinh(beyond / reach) / sinh(whole / reach), which is a line for a long reach
+  return std::exp(-away / reach) * std::expm1(-2 * beyond / reach) / std::expm1(-2 * whole / reach);
+}
+
+Index edge_count(const Gap& gap) { return Index{gap.before} + Index{gap.after}; }
+
+// The candidate's misses at the edges, [edges x 3].
+Matrix misses(const BodyTake& take, const Gap& gap, const Prediction& prediction, std::size_t k) {
+  Matrix found(edge_count(gap), 3);
+  for (Index e = 0; e < found.rows(); ++e)
+    found.row(e) = take.position(prediction.frames[static_cast<std::size_t>(e)], gap.joint) -
+                   prediction.made.positions[k].row(e);
+  return found;
+}
+
+// The candidate without its edges, misses at these taken out.
+Matrix bridged(const Gap& gap, const Prediction& prediction, std::size_t k, const Matrix& miss,
+               double reach) {
+  const Index edges = miss.rows(), count = prediction.made.positions[k].rows() - edges;
+  Matrix result = prediction.made.positions[k].bottomRows(count);
+  const double frames = reach * static_cast<double>(gap.frames() + 1);
+  for (Index i = 0; i < count; ++i) {
+    const Index frame = prediction.frames[static_cast<std::size_t>(i + edges)];
+    const auto left = static_cast<double>(frame - gap.first + 1);
+    const auto right = static_cast<double>(gap.last - frame);
+    if (edges == 2) {
+      result.row(i) += share_of_miss(left, right, frames) * miss.row(0) +
+                       share_of_miss(right, left, frames) * miss.row(1);
+    } else {
+      result.row(i) += std::exp(-(gap.before ? left : right + 1) / frames) * miss.row(0);
+    }
+  }
+  return result;
+}
+
+double depth(const Gap& gap, Index frame) {
+  const double p = place(gap, frame);
+  return gap.before && gap.after ? std::min(p, 1 - p) : p;
+}
+
+// Weights of least w'Cw that sum to 1, none below 0.
+Eigen::VectorXd best_weights(Eigen::MatrixXd covariance) {
+  covariance.diagonal().array() *= 1 + shrinkage;
+  covariance.diagonal().array() += std::numeric_limits<double>::min();
+  const Index count = covariance.rows();
+  Eigen::VectorXd used = Eigen::VectorXd::Ones(count);
+  while (true) {
+    // Those not used have rows and columns of the unit matrix, and 0 on the right.
+    Eigen::MatrixXd c = used.asDiagonal() * covariance * used.asDiagonal();
+    const double scale = c.diagonal().maxCoeff();
+    c.diagonal() += scale * (1 - used.array()).matrix();
+    Eigen::VectorXd w = c.ldlt().solve(used);
+    if (!w.allFinite() || w.sum() <= 0) w = used;
+    Index worst = 0;
+    if (w.minCoeff(&worst) >= 0) return w / w.sum();
+    used(worst) = 0;
+  }
+}
+
+struct Tried {
+  std::vector<Frames> inner;
+  std::vector<Prediction> predictions;
+};
+
+// Errors of a candidate at the probes of all trials, one coordinate below the other.
+Eigen::VectorXd errors_of(const BodyTake& take, std::span<const Gap> trials, const Tried& tried,
+                          std::size_t k, double reach) {
+  std::vector<double> found;
+  for (std::size_t t = 0; t < trials.size(); ++t) {
+    const Matrix miss = misses(take, trials[t], tried.predictions[t], k);
+    const Matrix positions = bridged(trials[t], tried.predictions[t], k, miss, reach);
+    for (std::size_t i = 0; i < tried.inner[t].size(); ++i) {
+      const Eigen::RowVector3d off =
+          positions.row(static_cast<Index>(i)) - take.position(tried.inner[t][i], trials[t].joint);
+      found.insert(found.end(), off.begin(), off.end());
+    }
+  }
+  return Eigen::Map<const Eigen::VectorXd>(found.data(), static_cast<Index>(found.size()));
+}
+
+// The errors of all candidates, in columns, each with the best reach.
+Eigen::MatrixXd learn_reaches(const BodyTake& take, std::span<const Gap> trials, const Tried& tried,
+                              FillRule& rule) {
+  Eigen::MatrixXd errors;
+  const std::size_t count = tried.predictions.front().made.positions.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    Eigen::VectorXd best;
+    rule.shares.push_back({0, 0});
+    for (const double reach : reaches) {
+      Eigen::VectorXd off = errors_of(take, trials, tried, k, reach);
+      if (best.size() > 0 && !(off.squaredNorm() < best.squaredNorm())) continue;
+      best = std::move(off);
+      rule.shares[k].reach = reach;
+    }
+    errors.conservativeResize(best.size(), static_cast<Index>(count));
+    errors.col(static_cast<Index>(k)) = best;
+  }
+  return errors;
+}
+
+void learn_what_is_usual(const BodyTake& take, std::span<const Gap> trials, const Tried& tried,
+                         FillRule& rule) {
+  const auto count = static_cast<double>(trials.size());
+  for (std::size_t t = 0; t < trials.size(); ++t) {
+    Matrix miss = Matrix::Zero(edge_count(trials[t]), 3);
+    for (std::size_t k = 0; k < rule.shares.size(); ++k)
+      miss += rule.shares[k].weight * misses(take, trials[t], tried.predictions[t], k);
+    rule.usual_miss += miss.squaredNorm() / static_cast<double>(miss.size()) / count;
+    const Eigen::VectorXd& unlikeness = tried.predictions[t].made.unlikeness;
+    if (unlikeness.size() > 0) rule.usual_unlikeness += unlikeness.mean() / count;
+  }
+}
+
+void learn_profile(std::span<const Gap> trials, const std::vector<Frames>& probed,
+                   const Eigen::VectorXd& errors, FillRule& rule) {
+  struct Bin {
+    double depth, sum, count;
+  };
+  std::vector<Bin> bins;
+  Index row = 0;
+  for (std::size_t t = 0; t < trials.size(); ++t)
+    for (const Index frame : probed[t]) {
+      const double d = depth(trials[t], frame);
+      const auto near = [&](const Bin& bin) { return std::abs(bin.depth - d) < 0.05; };
+      auto bin = std::ranges::find_if(bins, near);
+      if (bin == bins.end()) bin = bins.insert(bins.end(), {d, 0, 0});
+      bin->sum += errors.segment<3>(row).squaredNorm();
+      bin->count += 3;
+      row += 3;
+    }
+  std::ranges::sort(bins, {}, &Bin::depth);
+  const auto count = static_cast<double>(trials.size());
+  double last = 0;
+  for (const Bin& bin : bins) {
+    last = std::max(last, bin.sum / bin.count * (count + 2) / count);
+    rule.depths.push_back(bin.depth);
+    rule.variances.push_back(last);
+  }
+}
+
+double variance_at(const FillRule& rule, double depth) {
+  double d = 0, v = 0;
+  for (std::size_t k = 0; k < rule.depths.size(); ++k) {
+    if (depth <= rule.depths[k])
+      return v + (depth - d) / (rule.depths[k] - d) * (rule.variances[k] - v);
+    d = rule.depths[k];
+    v = rule.variances[k];
+  }
+  return v;
+}
+
+}  // namespace
+
+FillRule learn_fill_rule(const BodyTake& take, std::span<const Gap> trials, Index probed,
+                         const Predictor& predict) {
+  FillRule rule;
+  if (trials.empty()) return rule;
+  Tried tried;
+  for (const Gap& trial : trials) {
+    tried.inner.push_back(probes(trial, probed));
+    tried.predictions.push_back(predicted(trial, tried.inner.back(), predict));
+  }
+  const Eigen::MatrixXd errors = learn_reaches(take, trials, tried, rule);
+  const Eigen::VectorXd weights = best_weights(errors.transpose() * errors);
+  for (std::size_t k = 0; k < rule.shares.size(); ++k)
+    rule.shares[k].weight = weights(static_cast<Index>(k));
+  learn_what_is_usual(take, trials, tried, rule);
+  learn_profile(trials, tried.inner, errors * weights, rule);
+  return rule;
+}
+
+Matrix fill(const BodyTake& take, const Gap& gap, const Predictor& predict, const FillRule& rule) {
+  Frames inner;
+  for (Index i = gap.first; i < gap.last; ++i) inner.push_back(i);
+  const Prediction prediction = predicted(gap, inner, predict);
+  Matrix result = Matrix::Zero(gap.frames(), 4);
+  Matrix miss = Matrix::Zero(edge_count(gap), 3);
+  for (std::size_t k = 0; k < rule.shares.size(); ++k) {
+    const auto& [weight, reach] = rule.shares[k];
+    if (weight <= 0) continue;
+    const Matrix own = misses(take, gap, prediction, k);
+    result.leftCols(3) += weight * bridged(gap, prediction, k, own, reach);
+    miss += weight * own;
+  }
+  const double square = miss.squaredNorm() / static_cast<double>(miss.size());
+  const double unusual =
+      std::max(1., square / (rule.usual_miss + std::numeric_limits<double>::min()));
+  for (Index i = 0; i < gap.frames(); ++i) {
+    const double unlike = rule.usual_unlikeness > 0
+                              ? prediction.made.unlikeness(i + miss.rows()) / rule.usual_unlikeness
+                              : 1;
+    result(i, 3) = unusual * std::max(1., unlike) * variance_at(rule, depth(gap, gap.first + i));
+  }
+  return result;
+}
+
+}  // namespace moclean
