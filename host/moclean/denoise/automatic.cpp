@@ -11,6 +11,7 @@
 #include "moclean/body/carried.hpp"
 #include "moclean/body/cuts.hpp"
 #include "moclean/body/jump_flags.hpp"
+#include "moclean/body/length_noise.hpp"
 #include "moclean/body/rigid_flags.hpp"
 #include "moclean/body/vanished.hpp"
 #include "moclean/core/error.hpp"
@@ -79,6 +80,20 @@ void spare_hopeless(const Mask& seen, const Spans& spans, Mask& bad) {
     }
 }
 
+// The body of a take whose differences in time show noise of the deviation `dense`; what its
+// lengths show beyond goes to `known`. Raises `smallest`, the least spread of a distance, to their
+// noise.
+RigidBody learn_body(const BodyTake& take, double dense, JointKnowledge& known, double& smallest) {
+  smallest = std::max(smallest, noise_of_distance * dense);
+  RigidBody body = learn_rigid_body(take, smallest);
+  if (std::ranges::any_of(body.edges, &RigidEdge::exact)) return body;
+  const LengthNoise noise = length_noise(take);
+  if (!noise.correlated(known.size, dense)) return body;
+  known.noise = noise.slow;
+  smallest = std::max(smallest, noise_of_distance * noise.deviation);
+  return learn_rigid_body(take, smallest);
+}
+
 // Takes out what the body says is wrong, and cuts where another motion begins.
 void look_at_body(double frame_rate, const Automatic& method, Prepared& prepared) {
   const BodyTake first = body_take(prepared.samples, frame_rate);
@@ -87,9 +102,8 @@ void look_at_body(double frame_rate, const Automatic& method, Prepared& prepared
   JointKnowledge& known = prepared.knowledge;
   known.size = body_size(take);
   if (known.size <= 0) return;
-  const double smallest =
-      std::max(noise_of_distance * dense_noise_level(prepared.samples), edge_floor * known.size);
-  const RigidBody body = learn_rigid_body(take, smallest);
+  double smallest = edge_floor * known.size;
+  const RigidBody body = learn_body(take, dense_noise_level(prepared.samples), known, smallest);
   for (const RigidEdge& edge : body.edges)
     if (edge.hard || edge.exact)
       known.links.push_back({edge.first, edge.second, edge.length, edge.hard, edge.exact});
@@ -123,7 +137,7 @@ Prepared prepare(const Clip& take, const Automatic& method) {
 }
 
 JointKnowledge cut(const JointKnowledge& known, const Span& span) {
-  JointKnowledge part{.size = known.size, .links = known.links};
+  JointKnowledge part{.size = known.size, .noise = known.noise, .links = known.links};
   if (known.vouched.size() > 0) part.vouched = known.vouched.middleRows(span.first, span.frames());
   if (known.drawn.size() > 0) {
     part.drawn = known.drawn.middleRows(span.first, span.frames());
@@ -196,10 +210,20 @@ Clip like(const Clip& take, Matrix samples) {
           .unit = take.unit};
 }
 
-Denoised result_of(const Clip& take, const Spans& spans, const Solution& solution, Index segment) {
-  const Matrix motion = blend_spans(solution.low_rank, spans, segment);
+// Goes back towards trusted samples where that is nearer to the truth than all the way.
+void go_back(const Clip& take, const Mask& trusted, Matrix& motion) {
+  const Matrix samples = trusted.select(take.samples, missing);
+  const double share = worthwhile_share(body_take(samples, rate_of(take)), motion);
+  motion = trusted.select(take.samples + share * (motion - take.samples), motion);
+}
+
+Denoised result_of(const Clip& take, const Prepared& prepared, const Solution& solution,
+                   Index segment) {
+  const Spans& spans = prepared.spans;
+  Matrix motion = blend_spans(solution.low_rank, spans, segment);
   const Mask observed = !take.samples.array().isNaN();
   const Mask trusted = observed && blend_spans(*solution.trusted, spans, segment).array() >= 0.5;
+  if (prepared.knowledge.noise > 0) go_back(take, trusted, motion);
   const Mask gross = observed && !trusted && !motion.array().isNaN();
   Denoised result;
   result.outliers = like(take, gross.select(take.samples - motion, 0));
@@ -258,7 +282,7 @@ std::vector<Denoised> AutomaticDenoiser::denoise(std::span<const Clip> takes,
     all.finished += data.segments();
     Index segment = 0;
     for (const std::size_t t : group.takes) {
-      results[t] = result_of(takes[t], prepared[t].spans, solution, segment);
+      results[t] = result_of(takes[t], prepared[t], solution, segment);
       segment += static_cast<Index>(prepared[t].spans.size());
     }
   }

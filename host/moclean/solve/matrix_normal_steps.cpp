@@ -53,7 +53,7 @@ MatrixNormalWindow::MatrixNormalWindow(const ConstMatrixRef& data, const MatrixN
   observed_ = seen.cast<double>();
   const double size = known_->size > 0 ? known_->size : column_scale(data);
   noise_floor_ = noise_floor_share * size;
-  sigma_ = std::max(dense_noise_level(data), soft_floor_share * noise_floor_);
+  sigma_ = std::max({dense_noise_level(data), soft_floor_share * noise_floor_, known_->noise});
   weights_ = observed_;
   find_drawn();
   target_ = data_;
@@ -263,9 +263,10 @@ void MatrixNormalWindow::estimate_noise(const ConstMatrixRef& motion) {
     for (const double e : spectrum_) kept += kept_power(noise, std::max(e, least));
     const double fitted = static_cast<double>(frames_) * weights_.mean() * kept / weights_.sum();
     const double free = std::sqrt(std::max(1 - fitted, 0.02));
-    sigma_ = std::max(deviation_per_mad * median(residuals) / free, noise_floor_);
+    sigma_ = std::max({deviation_per_mad * median(residuals) / free, noise_floor_, known_->noise});
   } else if (2 * step_ >= method_->soft_steps && residuals.size() > 100) {
-    sigma_ = std::max(deviation_per_mad * median(residuals), soft_floor_share * noise_floor_);
+    sigma_ = std::max(
+        {deviation_per_mad * median(residuals), soft_floor_share * noise_floor_, known_->noise});
   }
   ++step_;
 }
