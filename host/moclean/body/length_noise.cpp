@@ -20,7 +20,7 @@ constexpr double stretch = 0.25;      // seconds
 constexpr double calm_share = 0.1, calm_power = 0.6;
 constexpr double least_correlation = 1.5, hidden = 2, least_share = 8e-3;
 constexpr double same_share = 0.05;  // of steps without any change
-constexpr std::size_t fewest_pairs = 8;
+constexpr std::size_t fewest_pairs = 8, fewest_stretches = 4;
 constexpr double fewest_frames = 20;
 
 // The two joints of a length and its core.
@@ -130,7 +130,7 @@ bool change_always(const std::vector<Rest>& rests, Index length) {
     }
     if (count > 0) powers.push_back(sum / count);
   }
-  return !powers.empty() && quantile(powers, calm_share) >= calm_power;
+  return powers.size() >= fewest_stretches && quantile(powers, calm_share) >= calm_power;
 }
 
 }  // namespace

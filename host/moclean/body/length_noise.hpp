@@ -22,7 +22,7 @@ struct LengthNoise {
 ///
 /// The slow part is the sum of the autocovariances over lags up to 0.25 s, as long as they are
 /// above 0: the spectral density at frequency 0. The noise is steady if the changes of all lengths
-/// from frame to frame have 0.6 of their mean power at least in nine of ten stretches of 0.25 s.
+/// from frame to frame have 0.6 of their mean power at least in nine of ten stretches of 0.25 s, of four at least.
 /// Rounded data is not: there lengths often stay the same.
 LengthNoise length_noise(const BodyTake& take);
 
