@@ -10,6 +10,7 @@
 #include "moclean/filter/filter.hpp"
 #include "moclean/solve/reference/reference_backend.hpp"
 
+#include "support/correlated_noise.hpp"
 #include "support/limbs.hpp"
 #include "support/matrix.hpp"
 #include "support/synthetic_walk.hpp"
@@ -81,6 +82,20 @@ TEST(Automatic, FillsGapsAndZeros) {
 
   EXPECT_TRUE(result.clip.samples.allFinite());
   EXPECT_LE(rms(result.clip, truth), 0.02);
+}
+
+TEST(Automatic, TakesNoiseAwayThatNeighbouringFramesShare) {
+  const Index joints = 16;
+  Clip truth = limbs(600);
+  truth.samples = test::swinging_limbs(600, joints);
+  truth.columns = default_column_names(3 * joints);
+  Clip noisy = truth;
+  noisy.samples += 0.05 * test::correlated_noise(600, 3 * joints, 0.8);
+
+  const double left = rms(cleaned(noisy).clip, truth);
+
+  EXPECT_LE(left, 0.8 * rms(noisy, truth));
+  EXPECT_LE(left, 0.85 * rms(cleaned(noisy, {.body = BodyRules::off}).clip, truth));
 }
 
 TEST(Automatic, NeighboursCarryAMarkerThroughALongGap) {

@@ -49,7 +49,8 @@ MatrixNormal with_knowledge(const SegmentBatch& data) {
   MatrixNormal method;
   for (Index b = 0; b < data.segments(); ++b) {
     const Index joints = data.columns() / 3;
-    JointKnowledge known{.size = 10, .vouched = Mask::Constant(data.rows(b), joints, true)};
+    JointKnowledge known{
+        .size = 10, .noise = 0.05, .vouched = Mask::Constant(data.rows(b), joints, true)};
     for (Index j = 1; j < joints; ++j) known.links.push_back({j - 1, j, 5, true, j % 2 == 0});
     known.drawn = Matrix::Constant(data.rows(b), data.columns(), 2);
     known.variance = Matrix::Constant(data.rows(b), joints, 0.5);

@@ -12,6 +12,7 @@
 #include "moclean/solve/matrix_normal_statistics.hpp"
 #include "moclean/solve/matrix_normal_steps.hpp"
 
+#include "support/correlated_noise.hpp"
 #include "support/matrix.hpp"
 #include "support/synthetic_walk.hpp"
 #include "support/tolerance.hpp"
@@ -141,6 +142,19 @@ TEST(MatrixNormal, TakesTheNoiseOfThePaperAway) {
   const auto wrong = static_cast<double>(((data - motion).array().abs() > 0.5).count());
   const Mask found = (data - motion).array().abs() > 0.5 && result.trusted.array() == 0;
   EXPECT_GE(static_cast<double>(found.count()), 0.99 * wrong);
+}
+
+TEST(MatrixNormal, TakesKnownNoiseAwayThatNeighbouringFramesShare) {
+  const Matrix truth = walk(600, 30);
+  const Matrix noisy = truth + 0.3 * test::correlated_noise(600, 30, 0.9);
+  MatrixNormal known;
+  known.knowledge = {{.noise = 0.3 * std::sqrt(1.9 / 0.1)}};
+
+  const double plain = rms(reference::solve(noisy, {}).low_rank - truth);
+  const double informed = rms(reference::solve(noisy, known).low_rank - truth);
+
+  EXPECT_GE(plain, 0.9 * rms(noisy - truth));  // it looks like motion
+  EXPECT_LE(informed, 0.8 * plain);
 }
 
 TEST(MatrixNormal, FillsGaps) {

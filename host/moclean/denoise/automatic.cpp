@@ -11,6 +11,7 @@
 #include "moclean/body/cuts.hpp"
 #include "moclean/body/fill_gaps.hpp"
 #include "moclean/body/jump_flags.hpp"
+#include "moclean/body/length_noise.hpp"
 #include "moclean/body/rigid_flags.hpp"
 #include "moclean/core/error.hpp"
 #include "moclean/core/parallel.hpp"
@@ -105,16 +106,30 @@ void fill_from_body(const BodyTake& take, std::vector<Index> cuts, double floor,
   }
 }
 
+// The body of a take whose differences in time show noise of the deviation `dense`; what its
+// lengths show beyond goes to `known`. Raises `smallest`, the least spread of a distance, to their
+// noise.
+RigidBody learn_body(const BodyTake& take, double dense, JointKnowledge& known, double& smallest) {
+  smallest = std::max(smallest, noise_of_distance * dense);
+  RigidBody body = learn_rigid_body(take, smallest);
+  if (std::ranges::any_of(body.edges, &RigidEdge::exact)) return body;
+  const LengthNoise noise = length_noise(take);
+  if (!noise.correlated(known.size, dense)) return body;
+  known.noise = noise.slow;
+  smallest = std::max(smallest, noise_of_distance * noise.deviation);
+  return learn_rigid_body(take, smallest);
+}
+
 // Takes out what the body says is wrong, and cuts where another motion begins.
 void look_at_body(double frame_rate, const Automatic& method, Prepared& prepared) {
   BodyTake take = body_take(prepared.samples, frame_rate);
   JointKnowledge& known = prepared.knowledge;
   known.size = body_size(take);
   if (known.size <= 0) return;
-  const double noise =
+  double smallest = edge_floor * known.size;
+  const double dense =
       std::max(dense_noise_level(prepared.samples), rounding_deviation(prepared.samples));
-  const double smallest = std::max(noise_of_distance * noise, edge_floor * known.size);
-  const RigidBody body = learn_rigid_body(take, smallest);
+  const RigidBody body = learn_body(take, dense, known, smallest);
   for (const RigidEdge& edge : body.edges)
     if (edge.hard || edge.exact)
       known.links.push_back({edge.first, edge.second, edge.length, edge.hard, edge.exact});
@@ -149,7 +164,7 @@ Prepared prepare(const Clip& take, const Automatic& method) {
 }
 
 JointKnowledge cut(const JointKnowledge& known, const Span& span) {
-  JointKnowledge part{.size = known.size, .links = known.links};
+  JointKnowledge part{.size = known.size, .noise = known.noise, .links = known.links};
   if (known.vouched.size() > 0) part.vouched = known.vouched.middleRows(span.first, span.frames());
   if (known.drawn.size() > 0) {
     part.drawn = known.drawn.middleRows(span.first, span.frames());
@@ -256,14 +271,24 @@ void leave_unknown(const Clip& take, double size, Denoised& result) {
   result.sigma->samples = unknown.select(missing, result.sigma->samples);
 }
 
+// Goes back towards trusted samples where that is nearer to the truth than all the way.
+void go_back(const Clip& take, const Mask& trusted, Matrix& motion) {
+  const Matrix samples = trusted.select(take.samples, missing);
+  const double share = worthwhile_share(body_take(samples, rate_of(take)), motion);
+  motion = trusted.select(take.samples + share * (motion - take.samples), motion);
+}
+
 Denoised result_of(const Clip& take, const Prepared& prepared, const Solution& solution,
                    Index segment) {
   const Spans& spans = prepared.spans;
+  Matrix motion = blend_spans(solution.low_rank, spans, segment);
   const Mask observed = !take.samples.array().isNaN();
+  const Mask trusted = observed && blend_spans(*solution.trusted, spans, segment).array() >= 0.5;
+  if (prepared.knowledge.noise > 0) go_back(take, trusted, motion);
   Denoised result;
-  result.clip = like(take, blend_spans(solution.low_rank, spans, segment));
+  result.clip = like(take, std::move(motion));
   result.sigma = like(take, blend_spans(*solution.deviation, spans, segment));
-  result.trusted = observed && blend_spans(*solution.trusted, spans, segment).array() >= 0.5;
+  result.trusted = trusted;
   leave_unknown(take, prepared.knowledge.size, result);
   for (std::size_t s = 0; s < spans.size(); ++s)
     result.segments.push_back({spans[s].first, spans[s].frames(),

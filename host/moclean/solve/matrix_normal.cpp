@@ -21,9 +21,9 @@ void require_count(const char* name, Index value) {
 }  // namespace
 
 bool JointKnowledge::operator==(const JointKnowledge& other) const {
-  return size == other.size && links == other.links && vouched.rows() == other.vouched.rows() &&
-         vouched.cols() == other.vouched.cols() && (vouched == other.vouched).all() &&
-         drawn == other.drawn && variance == other.variance;
+  return size == other.size && noise == other.noise && links == other.links &&
+         vouched.rows() == other.vouched.rows() && vouched.cols() == other.vouched.cols() &&
+         (vouched == other.vouched).all() && drawn == other.drawn && variance == other.variance;
 }
 
 void check(const MatrixNormal& method) {

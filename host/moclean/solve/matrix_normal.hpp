@@ -21,6 +21,7 @@ struct DistanceLink {
 /// What is known of one segment beside its samples.
 struct JointKnowledge {
   double size = 0;    ///< unit of the floors of noise, a body's size; above 0
+  double noise = 0;   ///< least sigma: noise that neighbouring frames share hides from them
   Mask vouched = {};  ///< [frames x joints]: samples the links say are right; or empty
   std::vector<DistanceLink> links = {};
   Matrix drawn = {};     ///< [frames x columns]: where missing samples should be; or empty

@@ -57,8 +57,8 @@ MatrixNormalWindow::MatrixNormalWindow(const ConstMatrixRef& data, const MatrixN
   observed_ = seen.cast<double>();
   const double size = known_->size > 0 ? known_->size : column_scale(data);
   noise_floor_ = noise_floor_share * size;
-  rounding_ = rounding_deviation(data);
-  sigma_ = std::max({dense_noise_level(data), rounding_, soft_floor_share * noise_floor_});
+  least_noise_ = std::max(rounding_deviation(data), known_->noise);
+  sigma_ = std::max({dense_noise_level(data), least_noise_, soft_floor_share * noise_floor_});
   weights_ = observed_;
   find_drawn();
   target_ = data_;
@@ -282,10 +282,10 @@ void MatrixNormalWindow::estimate_noise(const ConstMatrixRef& motion) {
     for (const double e : spectrum_) kept += kept_power(noise, std::max(e, least));
     const double fitted = static_cast<double>(frames_) * weights_.mean() * kept / weights_.sum();
     const double free = std::sqrt(std::max(1 - fitted, 0.02));
-    sigma_ = std::max({deviation_per_mad * median(residuals) / free, rounding_, noise_floor_});
+    sigma_ = std::max({deviation_per_mad * median(residuals) / free, least_noise_, noise_floor_});
   } else if (2 * step_ >= method_->soft_steps && residuals.size() > 100) {
     sigma_ = std::max(
-        {deviation_per_mad * median(residuals), rounding_, soft_floor_share * noise_floor_});
+        {deviation_per_mad * median(residuals), least_noise_, soft_floor_share * noise_floor_});
   }
   ++step_;
 }

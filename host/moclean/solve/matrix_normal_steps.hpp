@@ -117,7 +117,7 @@ class MatrixNormalWindow {
   Mask present_;            // observed or drawn
   std::vector<Drawn> drawn_;
   Matrix nearness_;                // of joints; empty where columns are no joints
-  double noise_floor_, rounding_;  // least sigma: of the data's size, and what rounding makes
+  double noise_floor_, least_noise_;  // least sigma: of the data's size, and what rounding makes
   double sigma_;
   int step_ = 0;
   Matrix weights_, solve_weights_, target_;  // W [frames x columns], W / v, what S is drawn to
