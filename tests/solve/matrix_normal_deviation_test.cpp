@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include <Eigen/LU>
 #include <gtest/gtest.h>
 
 #include "moclean/solve/matrix_normal_steps.hpp"
@@ -110,7 +111,7 @@ TEST(MarginalDeviation, GrowsIntoAGapAndMoreWithoutNeighboursAndFarSide) {
   EXPECT_LT(alone(104, 3), alone(110, 3));
   EXPECT_NEAR(alone(105, 3), alone(115, 3), 1e-9 * alone(105, 3));
   EXPECT_GT(together(110, 3), 1.1 * alone(110, 3));
-  EXPECT_GT(open(299, 15), 3 * open(290, 15));
+  EXPECT_GT(open(299, 15), 2 * open(290, 15));  // 2.4 = sqrt(40 41^2 / (22 23^2)), less the trials
 }
 
 TEST(MarginalDeviation, JoinsWhatElseIsKnownByPrecision) {
