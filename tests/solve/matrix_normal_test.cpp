@@ -193,18 +193,20 @@ TEST(MatrixNormal, DrawsMissingSamplesToWhereTheyShouldBe) {
     return rms((result.low_rank - motion).block(100, 3, 90, 3));
   };
   EXPECT_LE(off(drawn), 0.3 * off(blind));
-  EXPECT_LE(drawn.deviation.block(100, 3, 90, 3).maxCoeff(), 1.001e-3);
+  EXPECT_LE(drawn.deviation.block(100, 3, 90, 3).maxCoeff(), 1.02e-3);  // the floor beside it
   EXPECT_GT(blind.deviation(145, 3), 0.01);
   EXPECT_TRUE((drawn.trusted.block(100, 3, 90, 3).array() == 0).all());
 }
 
 TEST(MatrixNormal, ScalesWithItsData) {
   const Matrix data = spoilt(walk(150, 9), 4);
-  const Matrix expected = reference::solve(data, MatrixNormal{}).low_rank;
+  const auto expected = reference::solve(data, MatrixNormal{});
 
   for (const double scale : {1e-3, 25.4, 1e3}) {
-    const Matrix scaled = reference::solve(scale * data, MatrixNormal{}).low_rank;
-    EXPECT_LE(test::relative_difference(scaled / scale, expected), 1e-9) << scale;
+    const auto scaled = reference::solve(scale * data, MatrixNormal{});
+    EXPECT_LE(test::relative_difference(scaled.low_rank / scale, expected.low_rank), 1e-9) << scale;
+    EXPECT_LE(test::relative_difference(scaled.deviation / scale, expected.deviation), 1e-9)
+        << scale;
   }
 }
 

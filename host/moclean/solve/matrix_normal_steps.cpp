@@ -7,10 +7,12 @@
 #include <complex>
 #include <iterator>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "moclean/core/linear_fill.hpp"
 #include "moclean/core/order_statistics.hpp"
+#include "moclean/solve/matrix_normal_deviation.hpp"
 #include "moclean/solve/matrix_normal_prior.hpp"
 #include "moclean/solve/matrix_normal_statistics.hpp"
 #include "moclean/solve/rounding_step.hpp"
@@ -332,20 +334,21 @@ Matrix MatrixNormalWindow::rejected(const ConstMatrixRef& cleaned) const {
 
 Mask MatrixNormalWindow::trusted() const { return weights_.array() > 0; }
 
-Matrix MatrixNormalWindow::deviation() const {
+Matrix MatrixNormalWindow::deviation(const ConstMatrixRef& motion,
+                                     const ConstMatrixRef& eigenvectors) const {
   if (step_ == 0) return Matrix::Constant(frames_, columns(), missing);
-  Matrix result = reach(weights_);
-  for (Index j = 0; j < columns(); ++j)
-    for (Index i = 0; i < frames_; ++i) {
-      const double open = open_variance(result(i, j)) * predictive_(j);
-      const double noise = square(sigma_);
-      result(i, j) = std::sqrt(weights_(i, j) > 0 ? open * noise / (open + noise) : open);
-    }
-  for (const Drawn& sample : drawn_) {
-    double& deviation = result(sample.row, sample.column);
-    const double open = square(deviation), all = open + sample.variance;
-    if (all > 0) deviation = std::sqrt(open * sample.variance / all);
-  }
+  Matrix drawn = Matrix::Constant(frames_, columns(), std::numeric_limits<double>::infinity());
+  for (const Drawn& sample : drawn_) drawn(sample.row, sample.column) = sample.variance;
+  Matrix result = marginal_deviation({.motion = motion.topRows(frames_),
+                                      .used = trusted(),
+                                      .rejected = rejected(motion.topRows(frames_)),
+                                      .drawn_variance = std::move(drawn),
+                                      .eigenvectors = eigenvectors,
+                                      .spectrum = spectrum_,
+                                      .noise = sigma_,
+                                      .size = noise_floor_ / noise_floor_share,
+                                      .floor = noise_floor_,
+                                      .joint_columns = method_->joint_columns});
   leave_unobserved(result);
   return result;
 }

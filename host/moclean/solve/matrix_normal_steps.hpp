@@ -78,10 +78,10 @@ class MatrixNormalWindow {
   /// Samples that were trusted in the last step, [frames x columns].
   Mask trusted() const;
 
-  /// Standard deviation of the cleaned motion, [frames x columns]: sigma and what the neighbouring
-  /// samples in use leave open, together. NaN in columns without any sample, and where there was
-  /// no step.
-  Matrix deviation() const;
+  /// Standard deviation of the cleaned motion, [frames x columns], given S and the eigenvectors of
+  /// the last step's A'A in rows: solve/matrix_normal_deviation.hpp. NaN in columns without any
+  /// sample, and where there was no step.
+  Matrix deviation(const ConstMatrixRef& motion, const ConstMatrixRef& eigenvectors) const;
 
  private:
   // A missing sample that is known about.

@@ -242,13 +242,16 @@ void MatrixNormalSolver::solve(const SegmentBatch& data, Index first, Index last
 void MatrixNormalSolver::finish(Run& run, Index first, Solution& solution) {
   std::vector<std::int32_t> iterations(run.windows());
   run.gradients.iterations.read(iterations);
+  std::vector<double> Z(run.batch.square_size());
+  run.Z.read(Z);
   for (std::size_t i = 0; i < run.windows(); ++i) {
     const Index b = first + static_cast<Index>(i);
     const MatrixNormalWindow& window = run.steps[i];
     const auto own = run.host.segment(static_cast<Index>(i));
     solution.low_rank.segment(b) = window.trivial() ? window.filled() : window.cleaned(own);
     solution.trusted->segment(b) = window.trusted().cast<double>();
-    solution.deviation->segment(b) = window.deviation();
+    solution.deviation->segment(b) =
+        window.deviation(own, run.square_of(Z, static_cast<std::int32_t>(i)));
     solution.sparse.segment(b) = window.rejected(solution.low_rank.segment(b));
     solution.segments[static_cast<std::size_t>(b)] = {.iterations = iterations[i],
                                                       .rank = {},

@@ -116,13 +116,13 @@ MatrixNormalSolution solve(const ConstMatrixRef& data, const MatrixNormal& metho
   solution.outcome = {
       .iterations = 0, .rank = {}, .residual = 0, .converged = false, .fixed_steps = true};
   Matrix S = Matrix::Zero(window.rows(), window.columns());
+  Spectrum Q;
   if (!window.trivial()) {
     const Matrix ones = Matrix::Ones(window.rows(), window.columns());
     const auto guess = window.first_guess();
     S = guess.motion;
     smooth(guess.motion, ones, guess.stiffness.asDiagonal().toDenseMatrix(),
            method.solve_iterations, method.solve_tolerance, S);
-    Spectrum Q;
     for (int step = 0; step < window.steps(); ++step) {
       if (stop.stop_requested()) throw Cancelled();
       Matrix A = window.accelerations(S);
@@ -140,7 +140,7 @@ MatrixNormalSolution solve(const ConstMatrixRef& data, const MatrixNormal& metho
   solution.low_rank = window.trivial() ? window.filled() : window.cleaned(S);
   solution.sparse = window.rejected(solution.low_rank);
   solution.trusted = window.trusted().cast<double>();
-  solution.deviation = window.deviation();
+  solution.deviation = window.deviation(S, Q.vectors.transpose());
   return solution;
 }
 
