@@ -4,6 +4,8 @@
 
 #include <gmock/gmock.h>
 
+#include "moclean/core/random.hpp"
+
 #include "support/correlated_noise.hpp"
 #include "support/limbs.hpp"
 
@@ -63,6 +65,20 @@ TEST(LengthNoise, ScalesWithTheData) {
 
   EXPECT_NEAR(found.deviation, 1000 * before.deviation, 1e-9 * found.deviation);
   EXPECT_NEAR(found.slow, 1000 * before.slow, 1e-9 * found.slow);
+}
+
+TEST(LengthNoise, IsNotMotionBetweenMarkersWithoutABone) {
+  // Each swings by itself, at 0.5 to 1.5 Hz about a place of its own.
+  Random random(4);
+  Matrix samples(frames, 3 * joints);
+  for (Index c = 0; c < samples.cols(); ++c) {
+    const double speed = 2 * M_PI * (0.5 + random.uniform()) / 120, phase = 7 * random.uniform();
+    const double place = 10 * random.uniform();
+    for (Index i = 0; i < frames; ++i)
+      samples(i, c) = place + 0.3 * std::sin(speed * static_cast<double>(i) + phase);
+  }
+
+  EXPECT_FALSE(noise_of(samples).correlated(size_of(samples), 0));
 }
 
 TEST(LengthNoise, IsNotWhatRestsWhileTheBodyRests) {

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include <Eigen/Geometry>
@@ -26,14 +28,15 @@ struct Learned {
 
   RigidFlags flags() const { return judge(take, body, size, smallest); }
   Mask jumps(const Mask& trusted) const {
-    return jump_flags(take, sudden_steps(take, trusted, size), body);
+    return jump_flags(take, sudden_steps(take, trusted, least_sudden_step(size, smallest)), body);
   }
   Mask trusted() const {
     const RigidFlags found = flags();
     return found.consistent && !found.bad;
   }
   std::vector<Index> cut() const {
-    return cuts(trusted(), sudden_steps(take, trusted(), size), body, jumps(trusted()));
+    return cuts(trusted(), sudden_steps(take, trusted(), least_sudden_step(size, smallest)), body,
+                jumps(trusted()));
   }
 
   BodyTake take;
@@ -210,6 +213,34 @@ TEST(RigidBody, IsNotLearnedFromStandingStill) {
   EXPECT_FALSE(learned.flags().bad.any());
 }
 
+TEST(RigidBody, HasNoExactDistanceWhereRoundingMakesThem) {
+  // Who hardly moves, rounded to a tenth of the shortest bone: most distances never change.
+  Matrix samples = test::swinging_limbs(frames, joints);
+  for (Index i = 1; i < frames; ++i)
+    samples.row(i) = samples.row(0) + 0.02 * (samples.row(i) - samples.row(0));
+  constexpr double step = 0.1;
+  samples = (samples / step).array().round() * step;
+  const double deviation = step / std::sqrt(12.);
+  const BodyTake take = body_take(samples, 120);
+
+  const RigidBody blind = learn_rigid_body(take, 1.4 * deviation);
+  const RigidBody told = learn_rigid_body(take, 1.4 * deviation, deviation);
+
+  EXPECT_TRUE(std::ranges::any_of(blind.edges, &RigidEdge::exact));
+  EXPECT_FALSE(std::ranges::any_of(told.edges, &RigidEdge::exact));
+}
+
+TEST(SuddenSteps, AreNotMadeByDenseNoise) {
+  const Matrix samples = noisy(test::swinging_limbs(frames, joints), 0.3);
+  const BodyTake take = body_take(samples, 120);
+  const Mask all = Mask::Constant(frames, joints, true);
+
+  const double least = least_sudden_step(body_size(take), 1.4 * 0.3);
+
+  for (const SuddenSteps& joint : sudden_steps(take, all, least))
+    EXPECT_TRUE(std::ranges::none_of(joint.sudden, std::identity{}));
+}
+
 TEST(RigidFlags, VouchForAJointWhoseBonesHoldHoweverItMoves) {
   // Joint 8 flips about joint 3 in one frame; the bone keeps its length.
   Matrix samples = test::swinging_limbs(frames, joints);
@@ -284,7 +315,8 @@ TEST(JumpFlags, DoNotCountWhatIsForgotten) {
   for (const Index j : {3, 7, 8})
     samples.middleRows(200, 50).middleCols(3 * j, 3).rowwise() += Eigen::RowVector3d(2, 1, -1.5);
   const Learned learned(samples);
-  std::vector<SuddenSteps> steps = sudden_steps(learned.take, learned.trusted(), learned.size);
+  std::vector<SuddenSteps> steps =
+      sudden_steps(learned.take, learned.trusted(), least_sudden_step(learned.size, 0));
 
   forget_steps_into(200, steps);
 

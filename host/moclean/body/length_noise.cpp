@@ -19,6 +19,7 @@ constexpr double longest_lag = 0.25;  // seconds
 constexpr double stretch = 0.25;      // seconds
 constexpr double calm_share = 0.1, calm_power = 0.6;
 constexpr double least_correlation = 1.5, hidden = 2, least_share = 8e-3;
+constexpr double most_share = 0.1, most_lasting = 0.15;
 constexpr double same_share = 0.05;  // of steps without any change
 constexpr std::size_t fewest_pairs = 8, fewest_stretches = 4;
 constexpr double fewest_frames = 20;
@@ -137,7 +138,7 @@ bool change_always(const std::vector<Rest>& rests, Index length) {
 
 bool LengthNoise::correlated(double size, double dense) const {
   return steady && slow > least_correlation * deviation && deviation > hidden * dense &&
-         deviation > least_share * size;
+         deviation > least_share * size && deviation < most_share * size && lasting < most_lasting;
 }
 
 LengthNoise length_noise(const BodyTake& take) {
@@ -145,17 +146,20 @@ LengthNoise length_noise(const BodyTake& take) {
     return std::max<Index>(3, std::lround(seconds * take.frame_rate));
   };
   std::vector<Rest> rests;
-  std::vector<double> samples, slow;
+  std::vector<double> samples, slow, lasting;
   for (const Bone& bone : steadiest_bones(take)) {
     auto rest = rest_of(take, bone);
     if (!rest) continue;
     samples.push_back(rest->covariance(0) / 2);  // of two ends
     slow.push_back(slow_variance(*rest, frames_in(longest_lag)) / 2);
+    const Index later = std::min(frames_in(longest_lag), take.frames() - 1);
+    const double now = rest->covariance(0);
+    lasting.push_back(now > 0 ? rest->covariance(later) / now : 1);
     rests.push_back(std::move(*rest));
   }
   if (rests.size() < fewest_pairs) return {};
   return {std::sqrt(median(samples)), std::sqrt(median(slow)),
-          change_always(rests, frames_in(stretch))};
+          change_always(rests, frames_in(stretch)), median(lasting)};
 }
 
 double worthwhile_share(const BodyTake& take, const Matrix& motion) {

@@ -20,6 +20,7 @@ constexpr int enough_hard = 2;
 constexpr Index enough_frames = 400;
 constexpr double turn_seconds = 0.125, enough_turn = 0.2;  // radians
 constexpr double noise_of_turn = 3, weight_at_rest = 0.3;
+constexpr double noise_of_distance = 1.4;          // of two samples, about sqrt 2
 constexpr double hard_edge = 3, exact_edge = 0.3;  // spread, in units of the smallest
 
 struct Pair {
@@ -29,8 +30,9 @@ struct Pair {
 };
 
 // Distances that are looked at. A pair proves rigid by keeping its distance while it turns: a frame
-// counts by how far the pair turns about it, so that a posture held for half of the take is no bone.
-// A sample that is wrong for longer than that gives no weight to itself, but to those around it.
+// counts by how far the pair turns about it, so that a posture held for half of the take is no
+// bone. A sample that is wrong for longer than that gives no weight to itself, but to those around
+// it.
 std::vector<WeighedDistance> weighed_distances(const BodyTake& take, Index first, Index second,
                                                double smallest) {
   const Index step = std::max<Index>(1, take.frames() / enough_frames);
@@ -68,18 +70,17 @@ bool bends(std::span<const WeighedDistance> sorted, double centre, double limit)
   const double all = weight_of(sorted), shorter = below(centre - limit);
   const double longer = all - below(centre + limit);
   const double slightly = shorter - below(centre - slight * limit);
-  return shorter > bent_share * all && longer < one_sided * shorter &&
-         slightly > gradual * shorter;
+  return shorter > bent_share * all && longer < one_sided * shorter && slightly > gradual * shorter;
 }
 
 // By all frames alike, and where that is not beyond doubt by how far the pair turns about them.
-Pair look_at(const BodyTake& take, Index first, Index second, double smallest) {
+Pair look_at(const BodyTake& take, Index first, Index second, double smallest, bool exactly) {
   Pair pair{.edge = {.first = first, .second = second}};
   std::vector<WeighedDistance> turning = weighed_distances(take, first, second, smallest);
   std::vector<WeighedDistance> distances = turning;
   for (WeighedDistance& d : distances) d.weight = 1;
   Core core = steady_core(distances);
-  pair.edge.exact = core.spread < exact_edge * smallest;  // may be off: a burst in a short take
+  pair.edge.exact = exactly && core.spread < exact_edge * smallest;  // may be off: a short take
   if (!pair.edge.exact && core.spread < hard_edge * smallest) {
     core = steady_core(turning);
     distances = std::move(turning);
@@ -166,13 +167,15 @@ Core steady_core(const std::vector<double>& distances) {
   return steady_core(alike);
 }
 
-RigidBody learn_rigid_body(const BodyTake& take, double smallest) {
+RigidBody learn_rigid_body(const BodyTake& take, double smallest, double rounding) {
+  const bool exactly = noise_of_distance * rounding < exact_edge * smallest;
   RigidBody body;
   body.judged.assign(static_cast<std::size_t>(take.joints()), false);
   if (take.joints() < fewest_joints) return body;
   std::vector<Pair> pairs;
   for (Index a = 0; a < take.joints(); ++a)
-    for (Index b = a + 1; b < take.joints(); ++b) pairs.push_back(look_at(take, a, b, smallest));
+    for (Index b = a + 1; b < take.joints(); ++b)
+      pairs.push_back(look_at(take, a, b, smallest, exactly));
   soften_bending(pairs, take.joints());
   share_places(pairs, take.joints(), smallest);
   const std::vector<double> bounds = partner_bounds(pairs, take.joints());

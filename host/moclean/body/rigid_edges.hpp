@@ -36,8 +36,8 @@ struct WeighedDistance {
   double weight = 1;
 };
 
-/// Centre and spread of distances, from the shortest interval that holds more than a third of the weight; an
-/// infinite spread for 20 of them or fewer. Sorts them.
+/// Centre and spread of distances, from the shortest interval that holds more than a third of the
+/// weight; an infinite spread for 20 of them or fewer. Sorts them.
 struct Core {
   double centre = 0;
   double spread = 0;
@@ -46,7 +46,9 @@ Core steady_core(std::vector<WeighedDistance>& distances);
 Core steady_core(const std::vector<double>& distances);  ///< all of the same weight
 
 /// Learns the body. `smallest` is the spread that measurement noise gives a constant distance, in
-/// the unit of the take. Every frame of a short take is looked at, 400 to 800 of a longer one.
-RigidBody learn_rigid_body(const BodyTake& take, double smallest);
+/// the unit of the take. `rounding` is the deviation that rounding gives a coordinate: where that
+/// is not far below, a distance that stays for long only shows that both joints stood still, and
+/// none is exact. Every frame of a short take is looked at, 400 to 800 of a longer one.
+RigidBody learn_rigid_body(const BodyTake& take, double smallest, double rounding = 0);
 
 }  // namespace moclean

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <span>
 
 #include "moclean/body/run_edges.hpp"
@@ -14,9 +13,8 @@ namespace moclean {
 namespace {
 
 constexpr double cut = 5, vote = 0.4;
-constexpr Index turning_runs = 4;
-constexpr double mean_deviations = 4, least_of_exact = 0.01;
-constexpr double noise_of_distance = 1.4;  // of two samples, about sqrt 2
+constexpr double mean_deviations = 4, last_digit = 2e-3;  // of an exact distance
+constexpr double noise_of_distance = 1.4;                 // of two samples, about sqrt 2
 constexpr double weight_of_exact = 1.6;  // alone against a single other one it is not outvoted
 constexpr double slow_seconds = 0.092, dense = 2e-3, least_spread = 1e-4;  // the last two: of size
 constexpr double hole_share = 0.6, spared_share = 0.9, spared_seconds = 0.04;
@@ -169,54 +167,35 @@ void for_each_run(const ConstColumn& flags, const F& f) {
   }
 }
 
-// Per joint the length of its shortest hard edge, which most often is its bone.
-std::vector<double> bone_lengths(const RigidBody& body) {
-  std::vector<double> shortest(body.judged.size(), std::numeric_limits<double>::infinity());
-  for (const RigidEdge& edge : body.edges)
-    if (edge.hard && edge.share == 1)
-      for (const Index j : {edge.first, edge.second}) {
-        double& own = shortest[static_cast<std::size_t>(j)];
-        own = std::min(own, edge.length);
-      }
-  return shortest;
-}
-
-// Takes back flags that a distance to a joint without blame speaks against as long as they last: a
-// joint that was moved keeps an exact distance by coincidence, for a frame or so; one that turned
-// about the other keeps it. A hard distance is looked at by its mean, and for longer. Returns
-// samples that such a mean speaks for, [frames x joints].
+// Takes back flags that an exact distance to a joint without blame speaks against as long as they
+// last: a joint that was moved keeps a distance by coincidence, for a frame or so; one that turned
+// about the other keeps it. Returns the samples whose distance is that to the last digit on
+// average, [frames x joints].
 Mask spare(const RigidBody& body, const Distances& d, const Limits& limits, Index shortest,
            Mask& bad) {
   const Mask blamed = bad;
   Mask turned = Mask::Constant(bad.rows(), bad.cols(), false);
-  const std::vector<double> bones = bone_lengths(body);
   for (std::size_t e = 0; e < body.edges.size(); ++e) {
     const RigidEdge& edge = body.edges[e];
-    if (!edge.hard) continue;
+    if (!edge.exact) continue;
     const auto k = static_cast<Index>(e);
     const Eigen::ArrayXd off = d.values.col(k).array() - limits.centre(k);
     const Column right = d.both.col(k) && off.abs() <= limits.limit(k);
+    const double digits = mean_deviations * std::max(edge.spread, last_digit * limits.limit(k));
     for (const auto& [joint, other] :
          {std::pair(edge.first, edge.second), std::pair(edge.second, edge.first)}) {
-      if (!edge.exact && edge.length > bones[static_cast<std::size_t>(joint)]) continue;
       const Column witnessed = d.both.col(k) && !blamed.col(other), kept = witnessed && right;
       for_each_run(blamed.col(joint), [&, j = joint](Index first, Index last) {
         const auto run = kept.segment(first, last - first);
         const auto seen = witnessed.segment(first, last - first);
         const auto count = static_cast<double>(seen.count());
-        if (seen.count() < (edge.exact ? shortest : turning_runs * shortest) ||
-            static_cast<double>(run.count()) < spared_share * count)
+        if (seen.count() < shortest || static_cast<double>(run.count()) < spared_share * count)
           return;
-        const double mean = seen.select(off.segment(first, last - first), 0).sum() / count;
-        const double deviation = limits.limit(k) / cut;  // of one distance
-        const double usual = edge.exact ? std::max(edge.spread, least_of_exact * deviation)
-                                        : deviation / std::sqrt(count);
-        const bool holds = std::abs(mean) <= mean_deviations * usual;
-        if (!holds && !edge.exact) return;
-        auto turns = turned.col(j).segment(first, last - first);
-        if (holds) turns = turns || run;
         auto flags = bad.col(j).segment(first, last - first);
         flags = flags && !run;
+        const double mean = seen.select(off.segment(first, last - first), 0).sum() / count;
+        auto turns = turned.col(j).segment(first, last - first);
+        if (std::abs(mean) <= digits) turns = turns || run;
       });
     }
   }
@@ -242,7 +221,7 @@ void spare_gradual(const BodyTake& take, const RigidBody& body, const Distances&
     for_each_run(blamed.col(j), [&](Index first, Index last) {
       const Index count = last - first;
       if (2 * accused.col(j).segment(first, count).count() >= count) return;
-      if (!has_edge(take, j, first, last, noise))
+      if (!has_edge(take, blamed, j, first, last, noise))
         bad.col(j).segment(first, count).setConstant(false);
     });
 }
@@ -274,7 +253,8 @@ void vouch(const RigidBody& body, const Distances& d, const Limits& limits, Rigi
     compare(d, limits, i, off);
     for (std::size_t j = 0; j < witnesses.size(); ++j) {
       const auto& own = witnesses[j];
-      const auto right = std::ranges::count_if(own, [&](Index e) { return d.both(i, e) && !off(e); });
+      const auto right =
+          std::ranges::count_if(own, [&](Index e) { return d.both(i, e) && !off(e); });
       const bool wrong = std::ranges::any_of(own, [&](Index e) { return off(e); });
       const auto needed = std::clamp<Index>(static_cast<Index>(own.size()), 1, enough);
       const auto joint = static_cast<Index>(j);

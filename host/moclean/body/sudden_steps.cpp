@@ -10,7 +10,7 @@ namespace moclean {
 namespace {
 
 constexpr double trend_seconds = 0.075, speed_seconds = 0.125, local_seconds = 0.5;
-constexpr double noise_share = 8, speed_share = 0.5, size_share = 0.1;
+constexpr double noise_share = 8, speed_share = 0.5;
 
 // The way of a joint where it is trusted, interpolated elsewhere.
 Velocities velocities_of(const BodyTake& take, const Mask& trusted, Index joint) {
@@ -27,8 +27,8 @@ Velocities velocities_of(const BodyTake& take, const Mask& trusted, Index joint)
 
 // Whether no step can be sudden: neither a velocity nor a median of velocities is longer than the
 // largest of every coordinate together.
-bool is_slow(const Velocities& v, double size) {
-  return 2 * v.cwiseAbs().colwise().maxCoeff().norm() < size_share * size;
+bool is_slow(const Velocities& v, double least) {
+  return 2 * v.cwiseAbs().colwise().maxCoeff().norm() < least;
 }
 
 // Running medians of every coordinate.
@@ -51,19 +51,19 @@ std::vector<double> lengths(const Velocities& v) {
 }
 
 std::vector<bool> above_bound(const Velocities& rest, const Velocities& trend, double frame_rate,
-                              double size) {
+                              double least) {
   const std::vector<double> length = lengths(rest), speed = lengths(trend);
   std::vector<double> local = length, sorted = length;
   running_median(local, odd_frames(local_seconds, frame_rate));
-  const double least = median(sorted) / 2;
+  const double usual = median(sorted) / 2;
   const auto reach = static_cast<std::size_t>(odd_frames(speed_seconds, frame_rate) / 2);
   std::vector<bool> above(length.size());
   for (std::size_t i = 0; i < above.size(); ++i) {
     const auto first = speed.begin() + static_cast<std::ptrdiff_t>(i - std::min(i, reach));
     const auto last =
         speed.begin() + static_cast<std::ptrdiff_t>(std::min(above.size(), i + reach + 1));
-    const double bound = noise_share * std::max(local[i], least) +
-                         speed_share * *std::max_element(first, last) + size_share * size;
+    const double bound = noise_share * std::max(local[i], usual) +
+                         speed_share * *std::max_element(first, last) + least;
     above[i] = length[i] > bound;
   }
   return above;
@@ -71,16 +71,21 @@ std::vector<bool> above_bound(const Velocities& rest, const Velocities& trend, d
 
 }  // namespace
 
-std::vector<SuddenSteps> sudden_steps(const BodyTake& take, const Mask& trusted, double size) {
+double least_sudden_step(double size, double smallest) {
+  constexpr double size_share = 0.1, noise = 6;
+  return std::max(size_share * size, noise * smallest);
+}
+
+std::vector<SuddenSteps> sudden_steps(const BodyTake& take, const Mask& trusted, double least) {
   std::vector<SuddenSteps> joints(static_cast<std::size_t>(take.joints()));
   if (take.frames() < 3) return joints;
   for (Index j = 0; j < take.joints(); ++j) {
     const Velocities v = velocities_of(take, trusted, j);
-    if (is_slow(v, size)) continue;
+    if (is_slow(v, least)) continue;
     const Velocities trend = trend_of(v, take.frame_rate);
     SuddenSteps& steps = joints[static_cast<std::size_t>(j)];
     steps.rest = v - trend;
-    steps.sudden = above_bound(steps.rest, trend, take.frame_rate, size);
+    steps.sudden = above_bound(steps.rest, trend, take.frame_rate, least);
   }
   return joints;
 }

@@ -85,6 +85,24 @@ void spare_hopeless(const Mask& seen, const Spans& spans, Mask& bad) {
     }
 }
 
+// Bridges gaps of fewer than `longest` frames by straight lines, so that what is missing for a
+// moment still tells of joints that are missing for long.
+void bridge(Index longest, BodyTake& take) {
+  for (Index j = 0; j < take.joints(); ++j)
+    for (Index before = -1, i = 0; i < take.frames(); ++i) {
+      if (!take.seen(i, j)) continue;
+      const Index missing = i - before - 1;
+      if (before >= 0 && missing > 0 && missing < longest)
+        for (Index k = before + 1; k < i; ++k) {
+          const double share = static_cast<double>(k - before) / static_cast<double>(i - before);
+          take.positions.row(k).segment<3>(3 * j) =
+              (1 - share) * take.position(before, j) + share * take.position(i, j);
+          take.seen(k, j) = true;
+        }
+      before = i;
+    }
+}
+
 // Fills gaps of each of the motions that begin at the frames `cuts` from that alone.
 void fill_from_body(const BodyTake& take, std::vector<Index> cuts, double floor,
                     JointKnowledge& known) {
@@ -95,9 +113,11 @@ void fill_from_body(const BodyTake& take, std::vector<Index> cuts, double floor,
   cuts.push_back(take.frames());
   for (const Index last : cuts) {
     const Index frames = last - first;
-    const Fills fills = fill_gaps({take.positions.middleRows(first, frames),
-                                   take.seen.middleRows(first, frames), take.frame_rate},
-                                  floor, odd_frames(filled_seconds, take.frame_rate));
+    const Index least = odd_frames(filled_seconds, take.frame_rate);
+    BodyTake motion{take.positions.middleRows(first, frames), take.seen.middleRows(first, frames),
+                    take.frame_rate};
+    bridge(least, motion);
+    const Fills fills = fill_gaps(motion, floor, least);
     if (!fills.empty()) {
       known.drawn.middleRows(first, frames) = fills.positions;
       known.variance.middleRows(first, frames) = fills.variance;
@@ -109,15 +129,16 @@ void fill_from_body(const BodyTake& take, std::vector<Index> cuts, double floor,
 // The body of a take whose differences in time show noise of the deviation `dense`; what its
 // lengths show beyond goes to `known`. Raises `smallest`, the least spread of a distance, to their
 // noise.
-RigidBody learn_body(const BodyTake& take, double dense, JointKnowledge& known, double& smallest) {
+RigidBody learn_body(const BodyTake& take, double dense, double rounding, JointKnowledge& known,
+                     double& smallest) {
   smallest = std::max(smallest, noise_of_distance * dense);
-  RigidBody body = learn_rigid_body(take, smallest);
+  RigidBody body = learn_rigid_body(take, smallest, rounding);
   if (std::ranges::any_of(body.edges, &RigidEdge::exact)) return body;
   const LengthNoise noise = length_noise(take);
   if (!noise.correlated(known.size, dense)) return body;
   known.noise = noise.slow;
   smallest = std::max(smallest, noise_of_distance * noise.deviation);
-  return learn_rigid_body(take, smallest);
+  return learn_rigid_body(take, smallest, rounding);
 }
 
 // Takes out what the body says is wrong, and cuts where another motion begins.
@@ -127,9 +148,9 @@ void look_at_body(double frame_rate, const Automatic& method, Prepared& prepared
   known.size = body_size(take);
   if (known.size <= 0) return;
   double smallest = edge_floor * known.size;
-  const double dense =
-      std::max(dense_noise_level(prepared.samples), rounding_deviation(prepared.samples));
-  const RigidBody body = learn_body(take, dense, known, smallest);
+  const double rounding = rounding_deviation(prepared.samples);
+  const double dense = std::max(dense_noise_level(prepared.samples), rounding);
+  const RigidBody body = learn_body(take, dense, rounding, known, smallest);
   for (const RigidEdge& edge : body.edges)
     if (edge.hard || edge.exact)
       known.links.push_back({edge.first, edge.second, edge.length, edge.hard, edge.exact});
@@ -137,7 +158,8 @@ void look_at_body(double frame_rate, const Automatic& method, Prepared& prepared
   std::vector<Index> other_motions;
   if (body.is_rigid()) {
     const Mask trusted = flags.consistent && !flags.bad && take.seen;
-    std::vector<SuddenSteps> steps = sudden_steps(take, trusted, known.size);
+    std::vector<SuddenSteps> steps =
+        sudden_steps(take, trusted, least_sudden_step(known.size, smallest));
     Mask jumps = jump_flags(take, steps, body);
     if (other_motions = cuts(trusted, steps, body, jumps); !other_motions.empty()) {
       for (const Index frame : other_motions) forget_steps_into(frame, steps);

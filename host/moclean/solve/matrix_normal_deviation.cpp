@@ -18,8 +18,8 @@
 namespace moclean {
 namespace {
 
-constexpr double least_learned = 1.2, most_learned = 1.5, frames_learned = 5;  // learned_noise()
-constexpr double alone_variance = 1.3 * 1.3;  // of gaps that others do not share, over the trials'
+constexpr double least_learned = 1.15, most_learned = 1.5, frames_learned = 5;  // learned_noise()
+constexpr double alone_variance = 1.2 * 1.2;  // of gaps that others do not share, over the trials'
 constexpr double open_floor = 1.5 * 1.5;  // of samples not in use: solves end before they converge
 constexpr std::array<Index, 7> lengths = {1, 3, 7, 15, 31, 63, 127};  // of gaps tried; h = 2^index
 constexpr std::size_t fewest_trials = 16;
@@ -74,8 +74,10 @@ double noise_of(const MotionEstimate& e) {
 }
 
 // Q has been learned from the same noise, and fits it: the variance of S over the model's, the more
-// the fewer free accelerations are left of a column beside the number of columns.
+// the fewer free accelerations are left of a column beside the number of columns; hardly where Q
+// was drawn to what is known beforehand.
 double learned_noise(const MotionEstimate& e) {
+  if (e.has_prior) return least_learned;
   const double noise = noise_of(e);
   double kept = 0;
   for (const double power : e.spectrum) kept += kept_power(noise, power);

@@ -27,8 +27,11 @@ Matrix nearness_of(const ConstMatrixRef& positions) {
   const Index joints = positions.cols() / 3, count = std::min(positions.rows(), most_frames);
   std::vector<Eigen::ArrayXXd> all;
   Eigen::ArrayXXd mean = Eigen::ArrayXXd::Zero(joints, joints);
-  for (Index k = 0; k < count; ++k) {
-    all.push_back(distances(positions, (2 * k + 1) * positions.rows() / (2 * count)));
+  const auto place = [&](Index k) { return (2 * k + 1) * positions.rows() / (2 * count); };
+  for (Index k = 0; k < count; ++k) {  // the same frames if played backward
+    const bool second_half = 2 * k >= count;
+    all.push_back(
+        distances(positions, second_half ? positions.rows() - 1 - place(count - 1 - k) : place(k)));
     mean += all.back() / static_cast<double>(count);
   }
   std::vector<double> pairs;

@@ -219,8 +219,8 @@ void MatrixNormalWindow::weigh_softly(const Matrix& energy) {
       method_->soft_first * std::pow(method_->soft_last / method_->soft_first, place);
   for (Index i = 0; i < frames_; ++i)
     for (Index j = 0; j < columns(); ++j) {
-      weights_(i, j) =
-          vouched(i, j) ? observed_(i, j) : observed_(i, j) / square(1 + energy(i, j) / square(cut));
+      weights_(i, j) = vouched(i, j) ? observed_(i, j)
+                                     : observed_(i, j) / square(1 + energy(i, j) / square(cut));
       solve_weights_(i, j) = weights_(i, j) / (square(sigma_) + predictive_(j) / 6);
     }
 }
@@ -348,7 +348,8 @@ Matrix MatrixNormalWindow::deviation(const ConstMatrixRef& motion,
                                       .noise = sigma_,
                                       .size = noise_floor_ / noise_floor_share,
                                       .floor = noise_floor_,
-                                      .joint_columns = method_->joint_columns});
+                                      .joint_columns = method_->joint_columns,
+                                      .has_prior = nearness_.size() > 0});
   leave_unobserved(result);
   return result;
 }

@@ -116,7 +116,7 @@ class MatrixNormalWindow {
   Matrix data_, observed_;  // D also holds what is drawn
   Mask present_;            // observed or drawn
   std::vector<Drawn> drawn_;
-  Matrix nearness_;                // of joints; empty where columns are no joints
+  Matrix nearness_;                   // of joints; empty where columns are no joints
   double noise_floor_, least_noise_;  // least sigma: of the data's size, and what rounding makes
   double sigma_;
   int step_ = 0;
