@@ -88,12 +88,12 @@ Json change_record(const Change& changed) {
   record["corrected"] = changed.corrected;
   record["filled"] = changed.filled;
   record["largest"] = nullptr;
-  if (!changed.largest) return record;
+  if (changed.largest.distance == 0) return record;
   const bool sized = changed.body_size > 0;
-  record["largest"] = {{"distance", changed.largest->distance},
+  record["largest"] = {{"distance", changed.largest.distance},
                        {"share_of_body", sized ? Json(changed.largest_share()) : Json(nullptr)},
-                       {"joint", changed.largest->joint},
-                       {"frame", changed.largest->frame}};
+                       {"joint", changed.largest.joint},
+                       {"frame", changed.largest.frame}};
   return record;
 }
 

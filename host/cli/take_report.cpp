@@ -26,10 +26,10 @@ std::string changed_line(const TakeReport& take) {
   std::string line =
       fmt::format("{}: changed much: {:.2g} % of the samples corrected, {:.2g} % filled",
                   take.file.string(), 100 * changed.corrected, 100 * changed.filled);
-  if (!changed.largest) return line;
-  line += fmt::format("; farthest: {} by {:.3g}{} in frame {}", changed.largest->joint,
-                      changed.largest->distance, take.unit.empty() ? "" : " " + take.unit,
-                      changed.largest->frame);
+  if (changed.largest.distance == 0) return line;
+  line += fmt::format("; farthest: {} by {:.3g}{} in frame {}", changed.largest.joint,
+                      changed.largest.distance, take.unit.empty() ? "" : " " + take.unit,
+                      changed.largest.frame);
   if (changed.body_size > 0)
     line += fmt::format(" ({:.2g} % of the body's size)", 100 * changed.largest_share());
   return line;

@@ -33,7 +33,8 @@ TEST(ChangeOf, NothingIsNothing) {
 
   EXPECT_EQ(change.corrected, 0);
   EXPECT_EQ(change.filled, 0);
-  EXPECT_FALSE(change.largest);
+  EXPECT_EQ(change.largest.distance, 0);
+  EXPECT_EQ(change.largest.joint, "");
   EXPECT_EQ(change.largest_share(), 0);
 }
 
@@ -49,10 +50,9 @@ TEST(ChangeOf, CountsAndFindsTheFarthestJoint) {
 
   EXPECT_EQ(change.corrected, 2. / 20);
   EXPECT_EQ(change.filled, 1. / 20);
-  ASSERT_TRUE(change.largest);
-  EXPECT_EQ(change.largest->distance, 5);
-  EXPECT_EQ(change.largest->joint, "b");
-  EXPECT_EQ(change.largest->frame, 1);
+  EXPECT_EQ(change.largest.distance, 5);
+  EXPECT_EQ(change.largest.joint, "b");
+  EXPECT_EQ(change.largest.frame, 1);
 }
 
 TEST(ChangeOf, ComparesWithTheBodysSize) {
@@ -81,7 +81,8 @@ TEST(ChangeOf, TakesALostJointForNoneThatMoved) {
   const Change change = change_of(take, result);
 
   EXPECT_EQ(change.corrected, 3. / 20);
-  EXPECT_FALSE(change.largest);
+  EXPECT_EQ(change.largest.distance, 0);
+  EXPECT_EQ(change.largest.joint, "");
 }
 
 TEST(ChangeOf, RefusesAnotherShape) {

@@ -91,8 +91,8 @@ void bridge(Index longest, BodyTake& take) {
   for (Index j = 0; j < take.joints(); ++j)
     for (Index before = -1, i = 0; i < take.frames(); ++i) {
       if (!take.seen(i, j)) continue;
-      const Index missing = i - before - 1;
-      if (before >= 0 && missing > 0 && missing < longest)
+      const Index lost = i - before - 1;
+      if (before >= 0 && lost > 0 && lost < longest)
         for (Index k = before + 1; k < i; ++k) {
           const double share = static_cast<double>(k - before) / static_cast<double>(i - before);
           take.positions.row(k).segment<3>(3 * j) =

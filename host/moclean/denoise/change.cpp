@@ -47,8 +47,7 @@ Change change_of(const Clip& take, const Denoised& result) {
   for (const Joint& joint : all) {
     Index frame = 0;
     const double distance = moved(take, result.clip, joint).maxCoeff(&frame);
-    if (distance > (change.largest ? change.largest->distance : 0))
-      change.largest = {distance, joint.name, frame};
+    if (distance > change.largest.distance) change.largest = {distance, joint.name, frame};
   }
   change.body_size = size_of(all, result.clip);
   return change;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "moclean/denoise/denoiser.hpp"
@@ -12,20 +11,19 @@ struct Change {
   double corrected = 0;  ///< share of all samples that were observed and have another value now
   double filled = 0;     ///< share of all samples that were not observed and have a value now
 
-  /// The joint that was moved farthest in a frame, as far as it was observed; nothing if all are
-  /// where they were. One at 0, 0, 0 that is elsewhere now was lost, not moved.
+  /// The joint that was moved farthest in a frame, as far as it was observed; at distance 0 and
+  /// without a name if all are where they were. One at 0, 0, 0 that is elsewhere now was lost, not
+  /// moved.
   struct Largest {
     double distance = 0;  ///< in the unit of the take
     std::string joint;
     Index frame = 0;
   };
-  std::optional<Largest> largest = {};
+  Largest largest = {};
   double body_size = 0;  ///< of the joints that move, see body_size(); 0 where there are none
 
   /// The largest distance as a share of the body's size; 0 where there is neither.
-  double largest_share() const {
-    return largest && body_size > 0 ? largest->distance / body_size : 0;
-  }
+  double largest_share() const { return body_size > 0 ? largest.distance / body_size : 0; }
 };
 
 /// Compares a result with its take. Corrected are samples that sample_status() calls so. Throws
