@@ -49,7 +49,7 @@ TEST_F(Denoise, MotionAndOutliersAddUpToTheInput) {
 
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("120 frames x 93 columns, segments 2"));
-  EXPECT_THAT(outcome.err, IsEmpty());
+  EXPECT_THAT(outcome.err, HasSubstr("changed much"));  // a walk of which a fifth is disturbed
   const Matrix motion = read_clip(output_).samples;
   const Matrix outliers = read_clip(folder_ / "outliers.npy").samples;
   const double default_tolerance = 1e-7;

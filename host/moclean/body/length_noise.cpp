@@ -19,7 +19,7 @@ constexpr double longest_lag = 0.25;  // seconds
 constexpr double stretch = 0.25;      // seconds
 constexpr double calm_share = 0.1, calm_power = 0.6;
 constexpr double least_correlation = 1.5, hidden = 2, least_share = 8e-3;
-constexpr double most_share = 0.1, most_lasting = 0.15;
+constexpr double most_share = 0.1, most_lasting = 0.2;
 constexpr double same_share = 0.05;  // of steps without any change
 constexpr std::size_t fewest_pairs = 8, fewest_stretches = 4;
 constexpr double fewest_frames = 20;
@@ -134,6 +134,22 @@ bool change_always(const std::vector<Rest>& rests, Index length) {
   return powers.size() >= fewest_stretches && quantile(powers, calm_share) >= calm_power;
 }
 
+// The largest correlation of lengths with themselves `first` to 4 `first` frames later, the median
+// over the lengths: motion lasts, or comes back with the next step.
+double lasting(const std::vector<Rest>& rests, Index first) {
+  const Index last = std::min(4 * first, rests.front().values.size() - 1);
+  double most = 0;
+  for (Index lag = first; lag <= last; ++lag) {
+    std::vector<double> correlations;
+    for (const Rest& rest : rests) {
+      const double now = rest.covariance(0);
+      correlations.push_back(now > 0 ? rest.covariance(lag) / now : 1);
+    }
+    most = std::max(most, std::abs(median(correlations)));
+  }
+  return most;
+}
+
 }  // namespace
 
 bool LengthNoise::correlated(double size, double dense) const {
@@ -146,20 +162,17 @@ LengthNoise length_noise(const BodyTake& take) {
     return std::max<Index>(3, std::lround(seconds * take.frame_rate));
   };
   std::vector<Rest> rests;
-  std::vector<double> samples, slow, lasting;
+  std::vector<double> samples, slow;
   for (const Bone& bone : steadiest_bones(take)) {
     auto rest = rest_of(take, bone);
     if (!rest) continue;
     samples.push_back(rest->covariance(0) / 2);  // of two ends
     slow.push_back(slow_variance(*rest, frames_in(longest_lag)) / 2);
-    const Index later = std::min(frames_in(longest_lag), take.frames() - 1);
-    const double now = rest->covariance(0);
-    lasting.push_back(now > 0 ? rest->covariance(later) / now : 1);
     rests.push_back(std::move(*rest));
   }
   if (rests.size() < fewest_pairs) return {};
   return {std::sqrt(median(samples)), std::sqrt(median(slow)),
-          change_always(rests, frames_in(stretch)), median(lasting)};
+          change_always(rests, frames_in(stretch)), lasting(rests, frames_in(longest_lag))};
 }
 
 double worthwhile_share(const BodyTake& take, const Matrix& motion) {

@@ -9,13 +9,13 @@ struct LengthNoise {
   double deviation = 0;  ///< of a sample
   double slow = 0;       ///< of white noise that is as strong at low frequencies
   bool steady = false;   ///< there all the time, whether the body moves or not
-  double lasting = 1;    ///< correlation of a length with itself 0.25 s later
+  double lasting = 1;    ///< largest correlation of a length with itself 0.25 to 1 s later
 
   /// Neighbouring frames err alike, so that differences in time hide the noise: they show `dense`,
   /// less than half of it. And it is no play of skin and joints, which rest while the body does,
   /// and are less than 0.8 % of its `size`: 3 mm of a person. Nor is it motion between joints
-  /// without a bone, which is more than 10 % of the size, or lasts: 0.26 and more of it after 0.25
-  /// s where markers without bones were looked at, less than 0.1 of jitter of 3 Hz and above.
+  /// without a bone, which is more than 10 % of the size, or lasts, or comes back with the
+  /// next step: docs/decisions/correlated-noise.md.
   bool correlated(double size, double dense) const;
 };
 
