@@ -10,6 +10,7 @@
 #include "moclean/body/jump_flags.hpp"
 #include "moclean/body/rigid_flags.hpp"
 
+#include "support/hand.hpp"
 #include "support/limbs.hpp"
 
 namespace moclean {
@@ -149,28 +150,10 @@ TEST(RigidFlags, CountJointsAtOnePlaceOnce) {
   EXPECT_FALSE(Learned(with_straight_limb(3)).flags().bad.any());
 }
 
-// A hand of three joints, 9 to 11, that is rigid and turns about joint 8.
-Matrix with_hand() {
-  Matrix samples = test::swinging_limbs(frames, joints + 3);
-  for (Index i = 0; i < frames; ++i) {
-    const Eigen::Matrix3d turned =
-        Eigen::AngleAxisd(0.02 * static_cast<double>(i), Eigen::Vector3d(1, 2, 3).normalized())
-            .toRotationMatrix();
-    const Eigen::Vector3d wrist = samples.row(i).segment<3>(24);
-    samples.row(i).segment<3>(27) = wrist + turned * Eigen::Vector3d(0.8, 0, 0);
-    samples.row(i).segment<3>(30) = wrist + turned * Eigen::Vector3d(1.4, 0.2, 0);
-    samples.row(i).segment<3>(33) = wrist + turned * Eigen::Vector3d(0.5, 0.6, 0.1);
-  }
-  return samples;
-}
-
 TEST(RigidFlags, LetAJointTurnAboutAnother) {
   // The thumb leaves its place in the hand, but keeps its distance from the wrist.
-  Matrix samples = with_hand();
-  for (Index i = 200; i < 240; ++i) {
-    const Eigen::RowVector3d wrist = samples.row(i).segment<3>(24);
-    samples.row(i).segment<3>(33) = 2 * wrist - samples.row(i).segment<3>(33);
-  }
+  Matrix samples = test::limbs_with_hand(frames);
+  test::flip(test::thumb, 200, 240, samples);
   const RigidFlags flags = Learned(samples).flags();
 
   EXPECT_FALSE(flags.bad.any());
@@ -178,7 +161,7 @@ TEST(RigidFlags, LetAJointTurnAboutAnother) {
 }
 
 TEST(RigidFlags, FindAThumbThatIsNotWhereItsBoneIs) {
-  Matrix samples = with_hand();
+  Matrix samples = test::limbs_with_hand(frames);
   samples.middleRows(200, 40).middleCols(33, 3).rowwise() += Eigen::RowVector3d(0.4, -0.5, 0.3);
   const Mask bad = Learned(samples).flags().bad;
 

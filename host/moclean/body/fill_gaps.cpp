@@ -27,6 +27,24 @@ constexpr std::size_t always_regressed = 100, frames_per_regression = 10;
 constexpr double lag_of_gap = 0.4;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
+// Bridges gaps of fewer than `longest` frames by straight lines, so that what is missing for a
+// moment still tells of joints that are missing for long.
+void bridge(Index longest, BodyTake& take) {
+  for (Index j = 0; j < take.joints(); ++j)
+    for (Index before = -1, i = 0; i < take.frames(); ++i) {
+      if (!take.seen(i, j)) continue;
+      const Index lost = i - before - 1;
+      if (before >= 0 && lost > 0 && lost < longest)
+        for (Index k = before + 1; k < i; ++k) {
+          const double share = static_cast<double>(k - before) / static_cast<double>(i - before);
+          take.positions.row(k).segment<3>(3 * j) =
+              (1 - share) * take.position(before, j) + share * take.position(i, j);
+          take.seen(k, j) = true;
+        }
+      before = i;
+    }
+}
+
 // Which frames can serve as trials and for training.
 using Usable = std::vector<bool>;
 
@@ -175,7 +193,8 @@ Index shortest_regressed(const std::vector<Gap>& gaps, Index frames) {
 
 }  // namespace
 
-Fills fill_gaps(const BodyTake& take, double floor, Index least) {
+Fills fill_gaps(BodyTake take, double floor, Index least) {
+  bridge(least, take);
   const std::vector<Gap> gaps = gaps_of(take, least);
   if (gaps.empty()) return {};
   const Index long_enough = shortest_regressed(gaps, take.frames());

@@ -14,13 +14,12 @@ constexpr std::size_t partners = 6, fewest_values = 20;
 // Deviations of a normal distribution within which its central third lies.
 constexpr double deviations_of_third = 0.4307;
 constexpr Index fewest_joints = 4;
-constexpr double cut = 5, broken = 0.4;  // deviations; share of frames off the centre
+constexpr double broken = 0.4;  // share of frames off the centre
 constexpr double bent_share = 0.05, one_sided = 0.1, gradual = 0.5, slight = 4;
 constexpr int enough_hard = 2;
 constexpr Index enough_frames = 400;
 constexpr double turn_seconds = 0.125, enough_turn = 0.2;  // radians
 constexpr double noise_of_turn = 3, weight_at_rest = 0.3;
-constexpr double noise_of_distance = 1.4;          // of two samples, about sqrt 2
 constexpr double hard_edge = 3, exact_edge = 0.3;  // spread, in units of the smallest
 
 struct Pair {
@@ -88,7 +87,7 @@ Pair look_at(const BodyTake& take, Index first, Index second, double smallest, b
   pair.edge.length = core.centre;
   pair.edge.spread = core.spread;
   if (!std::isfinite(core.spread)) return pair;
-  const double limit = cut * std::max(core.spread, smallest);
+  const double limit = off_deviations * std::max(core.spread, smallest);
   double off = 0;
   for (const auto& [value, weight] : distances)
     if (std::abs(value - core.centre) > limit) off += weight;
@@ -127,7 +126,9 @@ void soften_bending(std::vector<Pair>& pairs, Index joints) {
 
 // Joints at one place, a BVH file has many, say the same of any other: together as much as one.
 void share_places(std::vector<Pair>& pairs, Index joints, double smallest) {
-  const auto apart = [&](const Pair& pair) { return pair.edge.length >= cut * smallest; };
+  const auto apart = [&](const Pair& pair) {
+    return pair.edge.length >= off_deviations * smallest;
+  };
   std::vector<double> at_place(static_cast<std::size_t>(joints), 1);
   for (const Pair& pair : pairs)
     if (pair.edge.hard && !apart(pair))

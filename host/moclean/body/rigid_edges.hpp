@@ -6,6 +6,12 @@
 
 namespace moclean {
 
+/// Deviation of a distance over that of the coordinates at its ends: about sqrt 2.
+inline constexpr double noise_of_distance = 1.4;
+
+/// A distance that is farther from its length than so many deviations is off.
+inline constexpr double off_deviations = 5;
+
 /// Two joints whose distance hardly changes in a take.
 struct RigidEdge {
   Index first = 0;

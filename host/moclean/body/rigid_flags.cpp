@@ -5,53 +5,24 @@
 #include <cmath>
 #include <span>
 
-#include "moclean/body/run_edges.hpp"
+#include "moclean/body/edge_distances.hpp"
+#include "moclean/body/taken_back.hpp"
 #include "moclean/core/linear_fill.hpp"
 #include "moclean/core/order_statistics.hpp"
 
 namespace moclean {
 namespace {
 
-constexpr double cut = 5, vote = 0.4;
-constexpr double mean_deviations = 4, last_digit = 2e-3;  // of an exact distance
-constexpr double noise_of_distance = 1.4;                 // of two samples, about sqrt 2
+constexpr double vote = 0.4;
 constexpr double weight_of_exact = 1.6;  // alone against a single other one it is not outvoted
 constexpr double slow_seconds = 0.092, dense = 2e-3, least_spread = 1e-4;  // the last two: of size
-constexpr double hole_share = 0.6, spared_share = 0.9, spared_seconds = 0.04;
-
-// Distances of the edges, [frames x edges], and where both ends were seen.
-struct Distances {
-  Matrix values;
-  Mask both;
-};
-
-Distances distances(const BodyTake& take, std::span<const RigidEdge> edges) {
-  const auto count = static_cast<Index>(edges.size());
-  Distances d{Matrix(take.frames(), count), Mask(take.frames(), count)};
-  for (Index i = 0; i < take.frames(); ++i)
-    for (Index e = 0; e < count; ++e) {
-      const RigidEdge& edge = edges[static_cast<std::size_t>(e)];
-      d.both(i, e) = take.seen(i, edge.first) && take.seen(i, edge.second);
-      d.values(i, e) = (take.position(i, edge.first) - take.position(i, edge.second)).norm();
-    }
-  return d;
-}
+constexpr double hole_share = 0.6;
 
 using Row = Eigen::Array<double, 1, Eigen::Dynamic>;
 using Marks = Eigen::Array<bool, 1, Eigen::Dynamic>;
-using Column = Eigen::Array<bool, Eigen::Dynamic, 1>;
-using ConstColumn = Eigen::Ref<const Column>;
-
-// Centres and limits to compare distances with, one per edge.
-struct Limits {
-  explicit Limits(std::size_t edges)
-      : centre(static_cast<Index>(edges)), limit(static_cast<Index>(edges)) {}
-
-  Row centre, limit;
-};
 
 // Which edges of a frame are off.
-void compare(const Distances& d, const Limits& limits, Index frame, Marks& off) {
+void compare(const EdgeDistances& d, const EdgeLimits& limits, Index frame, Marks& off) {
   off = d.both.row(frame) && (d.values.row(frame).array() - limits.centre).abs() > limits.limit;
 }
 
@@ -110,7 +81,7 @@ class Votes {
   Row left_;  // weights of the edges between joints that are not blamed
 };
 
-void blame_all(const RigidBody& body, const Distances& d, const Limits& limits, Mask& bad) {
+void blame_all(const RigidBody& body, const EdgeDistances& d, const EdgeLimits& limits, Mask& bad) {
   Row weight = limits.limit.square().inverse();
   for (std::size_t e = 0; e < body.edges.size(); ++e)
     weight(static_cast<Index>(e)) *=
@@ -124,8 +95,8 @@ void blame_all(const RigidBody& body, const Distances& d, const Limits& limits, 
 }
 
 // Running medians in the place of the distances, and limits that fit them.
-Limits slow_down(const BodyTake& take, double size, Distances& d) {
-  Limits limits(static_cast<std::size_t>(d.values.cols()));
+EdgeLimits slow_down(const BodyTake& take, double size, EdgeDistances& d) {
+  EdgeLimits limits(static_cast<std::size_t>(d.values.cols()));
   std::vector<double> channel(static_cast<std::size_t>(take.frames())), seen;
   for (Index e = 0; e < d.values.cols(); ++e) {
     Eigen::Map<Eigen::VectorXd> values(channel.data(), take.frames());
@@ -138,7 +109,7 @@ Limits slow_down(const BodyTake& take, double size, Distances& d) {
       if (d.both(i, e)) seen.push_back(values(i));
     const Core core = steady_core(seen);
     limits.centre(e) = core.centre;
-    limits.limit(e) = cut * std::max(core.spread, least_spread * size);
+    limits.limit(e) = off_deviations * std::max(core.spread, least_spread * size);
   }
   return limits;
 }
@@ -154,76 +125,6 @@ void close_holes(const BodyTake& take, Mask& bad) {
       if (static_cast<double>(flagged) > hole_share * static_cast<double>(last - first))
         bad(i, j) = true;
     }
-}
-
-// Calls f(first, last) for every run of flagged frames [first, last).
-template <class F>
-void for_each_run(const ConstColumn& flags, const F& f) {
-  for (Index first = 0, last = 0; first < flags.size(); first = last) {
-    last = first + 1;
-    if (!flags(first)) continue;
-    while (last < flags.size() && flags(last)) ++last;
-    f(first, last);
-  }
-}
-
-// Takes back flags that an exact distance to a joint without blame speaks against as long as they
-// last: a joint that was moved keeps a distance by coincidence, for a frame or so; one that turned
-// about the other keeps it. Returns the samples whose distance is that to the last digit on
-// average, [frames x joints].
-Mask spare(const RigidBody& body, const Distances& d, const Limits& limits, Index shortest,
-           Mask& bad) {
-  const Mask blamed = bad;
-  Mask turned = Mask::Constant(bad.rows(), bad.cols(), false);
-  for (std::size_t e = 0; e < body.edges.size(); ++e) {
-    const RigidEdge& edge = body.edges[e];
-    if (!edge.exact) continue;
-    const auto k = static_cast<Index>(e);
-    const Eigen::ArrayXd off = d.values.col(k).array() - limits.centre(k);
-    const Column right = d.both.col(k) && off.abs() <= limits.limit(k);
-    const double digits = mean_deviations * std::max(edge.spread, last_digit * limits.limit(k));
-    for (const auto& [joint, other] :
-         {std::pair(edge.first, edge.second), std::pair(edge.second, edge.first)}) {
-      const Column witnessed = d.both.col(k) && !blamed.col(other), kept = witnessed && right;
-      for_each_run(blamed.col(joint), [&, j = joint](Index first, Index last) {
-        const auto run = kept.segment(first, last - first);
-        const auto seen = witnessed.segment(first, last - first);
-        const auto count = static_cast<double>(seen.count());
-        if (seen.count() < shortest || static_cast<double>(run.count()) < spared_share * count)
-          return;
-        auto flags = bad.col(j).segment(first, last - first);
-        flags = flags && !run;
-        const double mean = seen.select(off.segment(first, last - first), 0).sum() / count;
-        auto turns = turned.col(j).segment(first, last - first);
-        if (std::abs(mean) <= digits) turns = turns || run;
-      });
-    }
-  }
-  return turned;
-}
-
-// Takes back flags of joints that no exact distance accuses and that neither leave nor come back by
-// a jump: a distance that is steady for a while changes gradually when the pose does.
-void spare_gradual(const BodyTake& take, const RigidBody& body, const Distances& d,
-                   const Limits& limits, double noise, Mask& bad) {
-  const Mask blamed = bad;
-  Mask accused = Mask::Constant(bad.rows(), bad.cols(), false);
-  for (std::size_t e = 0; e < body.edges.size(); ++e) {
-    const RigidEdge& edge = body.edges[e];
-    if (!edge.exact) continue;
-    const auto k = static_cast<Index>(e);
-    const Column off =
-        d.both.col(k) && (d.values.col(k).array() - limits.centre(k)).abs() > limits.limit(k);
-    accused.col(edge.first) = accused.col(edge.first) || off;
-    accused.col(edge.second) = accused.col(edge.second) || off;
-  }
-  for (Index j = 0; j < bad.cols(); ++j)
-    for_each_run(blamed.col(j), [&](Index first, Index last) {
-      const Index count = last - first;
-      if (2 * accused.col(j).segment(first, count).count() >= count) return;
-      if (!has_edge(take, blamed, j, first, last, noise))
-        bad.col(j).segment(first, count).setConstant(false);
-    });
 }
 
 // The edges that tell of each joint: its exact ones, but all hard ones of a joint without any.
@@ -243,7 +144,8 @@ std::vector<std::vector<Index>> witnesses_of(const RigidBody& body) {
   return own;
 }
 
-void vouch(const RigidBody& body, const Distances& d, const Limits& limits, RigidFlags& flags) {
+void vouch(const RigidBody& body, const EdgeDistances& d, const EdgeLimits& limits,
+           RigidFlags& flags) {
   constexpr Index enough = 2;
   const std::vector<std::vector<Index>> witnesses = witnesses_of(body);
   const auto linked =
@@ -270,27 +172,30 @@ void vouch(const RigidBody& body, const Distances& d, const Limits& limits, Rigi
 
 RigidFlags judge(const BodyTake& take, const RigidBody& body, double size, double smallest) {
   const Mask none = Mask::Constant(take.frames(), take.joints(), false);
-  RigidFlags flags{none, none, none};
+  RigidFlags flags{none, none, none, {}};
   if (!body.is_rigid()) return flags;
-  Distances d = distances(take, body.edges);
-  Limits limits(body.edges.size());
+  const EdgeDistances d = edge_distances(take, body.edges);
+  EdgeLimits limits(body.edges.size());
   std::vector<double> spreads;
   for (std::size_t e = 0; e < body.edges.size(); ++e) {
     const RigidEdge& edge = body.edges[e];
     limits.centre(static_cast<Index>(e)) = edge.length;
-    limits.limit(static_cast<Index>(e)) = cut * std::max(edge.spread, smallest);
+    limits.limit(static_cast<Index>(e)) = off_deviations * std::max(edge.spread, smallest);
     spreads.push_back(edge.spread);
   }
   blame_all(body, d, limits, flags.bad);
   if (quantile(spreads, 0.1) > dense * size) {
-    Distances slow = d;
-    const Limits slow_limits = slow_down(take, size, slow);
+    EdgeDistances slow = d;
+    const EdgeLimits slow_limits = slow_down(take, size, slow);
     blame_all(body, slow, slow_limits, flags.bad);
   }
   close_holes(take, flags.bad);
-  const Mask turned =
-      spare(body, d, limits, odd_frames(spared_seconds, take.frame_rate), flags.bad);
-  spare_gradual(take, body, d, limits, smallest / noise_of_distance, flags.bad);
+  flags.bones = noisy_bones(body, d, limits, flags.bad);
+  Mask turned = none;
+  if (flags.bones.empty()) turned = take_back_turning(take, body, d, limits, flags.bad);
+  take_back_gradual(take, body, d, limits, smallest / noise_of_distance, flags.bad);
+  if (!flags.bones.empty()) turned = turning_in_noise(flags.bad, flags.bones, flags.bones.largest);
+  flags.bad = flags.bad && !turned;
   vouch(body, d, limits, flags);
   flags.vouched = flags.vouched || (turned && !flags.bad);
   return flags;

@@ -1,15 +1,17 @@
 #pragma once
 
 #include "moclean/body/rigid_edges.hpp"
+#include "moclean/body/taken_back.hpp"
 
 namespace moclean {
 
 /// What the distances between joints say of every joint in every frame, [frames x joints].
 struct RigidFlags {
-  Mask bad;         ///< wrong: to blame for distances that are off
-  Mask vouched;     ///< right: two rigid distances or more say so and none the contrary, or as
-                    ///< judge() takes flags back
-  Mask consistent;  ///< as vouched, but one distance is enough where a joint has no more
+  Mask bad;          ///< wrong: to blame for distances that are off
+  Mask vouched;      ///< right: two rigid distances or more say so and none the contrary, or as
+                     ///< judge() takes flags back
+  Mask consistent;   ///< as vouched, but one distance is enough where a joint has no more
+  NoisyBones bones;  ///< empty where a distance is exact
 };
 
 /// Compares the distances of a take with those of its body. In every frame the joint with the
@@ -19,8 +21,8 @@ struct RigidFlags {
 /// one, such as that of a limb that is straight for most of a take. Where dense noise hides small
 /// errors, lasting ones are looked for in running medians of the distances, too.
 ///
-/// Flags that last for 0.04 s or more are taken back where one exact distance to a joint without
-/// blame holds all the while: the joint has turned about the other. `size` is body_size(take).
+/// Flags of joints that turned, or moved gradually, are taken back (taken_back.hpp). `size` is
+/// body_size(take).
 RigidFlags judge(const BodyTake& take, const RigidBody& body, double size, double smallest);
 
 }  // namespace moclean

@@ -4,34 +4,27 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "moclean/body/cuts.hpp"
-#include "moclean/body/fill_gaps.hpp"
-#include "moclean/body/jump_flags.hpp"
 #include "moclean/body/length_noise.hpp"
-#include "moclean/body/rigid_flags.hpp"
+#include "moclean/body/taken_back.hpp"
 #include "moclean/core/error.hpp"
 #include "moclean/core/parallel.hpp"
+#include "moclean/denoise/body_findings.hpp"
 #include "moclean/denoise/moving_part.hpp"
 #include "moclean/denoise/sample_status.hpp"
 #include "moclean/denoise/smooth_in_time.hpp"
 #include "moclean/denoise/unobserved.hpp"
 #include "moclean/segment/spans.hpp"
-#include "moclean/solve/matrix_normal_statistics.hpp"
-#include "moclean/solve/rounding_step.hpp"
 
 namespace moclean {
 namespace {
 
 constexpr double usual_rate = 120;                             // Hz, where none is known
 constexpr double median_seconds = 0.058, lag_seconds = 0.067;  // of the first guess
-constexpr double edge_floor = 1e-4;        // least spread of a distance, share of the body's size
-constexpr double noise_of_distance = 1.4;  // of two samples, about sqrt 2
-constexpr double filled_seconds = 0.067;   // shortest gap that the body fills
-constexpr double soft_floor = 2e-3;        // deviation of distances that is steady, share of size
 constexpr Index shortest_window = 8;
 constexpr double gentle_factor = 2;     // of the thresholds
 constexpr double no_threshold = 1e150;  // its square is finite, and above that of any residual
@@ -50,6 +43,7 @@ bool has_body(const Clip& take) {
 struct Prepared {
   Matrix samples;            // NaN where missing or flagged
   JointKnowledge knowledge;  // of the whole take
+  NoisyBones bones;          // of the whole take, or empty
   Spans spans;
 };
 
@@ -85,101 +79,25 @@ void spare_hopeless(const Mask& seen, const Spans& spans, Mask& bad) {
     }
 }
 
-// Bridges gaps of fewer than `longest` frames by straight lines, so that what is missing for a
-// moment still tells of joints that are missing for long.
-void bridge(Index longest, BodyTake& take) {
-  for (Index j = 0; j < take.joints(); ++j)
-    for (Index before = -1, i = 0; i < take.frames(); ++i) {
-      if (!take.seen(i, j)) continue;
-      const Index lost = i - before - 1;
-      if (before >= 0 && lost > 0 && lost < longest)
-        for (Index k = before + 1; k < i; ++k) {
-          const double share = static_cast<double>(k - before) / static_cast<double>(i - before);
-          take.positions.row(k).segment<3>(3 * j) =
-              (1 - share) * take.position(before, j) + share * take.position(i, j);
-          take.seen(k, j) = true;
-        }
-      before = i;
-    }
-}
-
-// Fills gaps of each of the motions that begin at the frames `cuts` from that alone.
-void fill_from_body(const BodyTake& take, std::vector<Index> cuts, double floor,
-                    JointKnowledge& known) {
-  known.drawn = Matrix::Zero(take.frames(), 3 * take.joints());
-  known.variance =
-      Matrix::Constant(take.frames(), take.joints(), std::numeric_limits<double>::infinity());
-  Index first = 0;
-  cuts.push_back(take.frames());
-  for (const Index last : cuts) {
-    const Index frames = last - first;
-    const Index least = odd_frames(filled_seconds, take.frame_rate);
-    BodyTake motion{take.positions.middleRows(first, frames), take.seen.middleRows(first, frames),
-                    take.frame_rate};
-    bridge(least, motion);
-    const Fills fills = fill_gaps(motion, floor, least);
-    if (!fills.empty()) {
-      known.drawn.middleRows(first, frames) = fills.positions;
-      known.variance.middleRows(first, frames) = fills.variance;
-    }
-    first = last;
-  }
-}
-
-// The body of a take whose differences in time show noise of the deviation `dense`; what its
-// lengths show beyond goes to `known`. Raises `smallest`, the least spread of a distance, to their
-// noise.
-RigidBody learn_body(const BodyTake& take, double dense, double rounding, JointKnowledge& known,
-                     double& smallest) {
-  smallest = std::max(smallest, noise_of_distance * dense);
-  RigidBody body = learn_rigid_body(take, smallest, rounding);
-  if (std::ranges::any_of(body.edges, &RigidEdge::exact)) return body;
-  const LengthNoise noise = length_noise(take);
-  if (!noise.correlated(known.size, dense)) return body;
-  known.noise = noise.slow;
-  smallest = std::max(smallest, noise_of_distance * noise.deviation);
-  return learn_rigid_body(take, smallest, rounding);
-}
-
 // Takes out what the body says is wrong, and cuts where another motion begins.
 void look_at_body(double frame_rate, const Automatic& method, Prepared& prepared) {
-  BodyTake take = body_take(prepared.samples, frame_rate);
-  JointKnowledge& known = prepared.knowledge;
-  known.size = body_size(take);
-  if (known.size <= 0) return;
-  double smallest = edge_floor * known.size;
-  const double rounding = rounding_deviation(prepared.samples);
-  const double dense = std::max(dense_noise_level(prepared.samples), rounding);
-  const RigidBody body = learn_body(take, dense, rounding, known, smallest);
-  for (const RigidEdge& edge : body.edges)
-    if (edge.hard || edge.exact)
-      known.links.push_back({edge.first, edge.second, edge.length, edge.hard, edge.exact});
-  RigidFlags flags = judge(take, body, known.size, smallest);
-  std::vector<Index> other_motions;
-  if (body.is_rigid()) {
-    const Mask trusted = flags.consistent && !flags.bad && take.seen;
-    std::vector<SuddenSteps> steps =
-        sudden_steps(take, trusted, least_sudden_step(known.size, smallest));
-    Mask jumps = jump_flags(take, steps, body);
-    if (other_motions = cuts(trusted, steps, body, jumps); !other_motions.empty()) {
-      for (const Index frame : other_motions) forget_steps_into(frame, steps);
-      jumps = jump_flags(take, steps, body);
-      prepared.spans = windows(method, take.frames(), other_motions);
-    }
-    flags.bad = flags.bad || jumps;
-  }
+  const BodyTake take = body_take(prepared.samples, frame_rate);
+  BodyFindings found = look_at(take, prepared.samples);
+  prepared.knowledge.size = found.knowledge.size;
+  if (found.knowledge.size <= 0) return;
+  if (!found.other_motions.empty())
+    prepared.spans = windows(method, take.frames(), found.other_motions);
   if (method.reject == Rejection::off || method.reject == Rejection::gentle)
-    flags.bad.setConstant(false);
-  spare_hopeless(take.seen, prepared.spans, flags.bad);
-  drop(flags.bad, prepared.samples);
-  known.vouched = flags.vouched && !flags.bad;
-  take.seen = take.seen && !flags.bad;
-  fill_from_body(take, std::move(other_motions), std::max(smallest, soft_floor * known.size),
-                 known);
+    found.bad.setConstant(false);
+  spare_hopeless(take.seen, prepared.spans, found.bad);
+  drop(found.bad, prepared.samples);
+  fill_from_body(take, found);
+  prepared.knowledge = std::move(found.knowledge);
+  prepared.bones = std::move(found.bones);
 }
 
 Prepared prepare(const Clip& take, const Automatic& method) {
-  Prepared prepared{.samples = take.samples, .knowledge = {}, .spans = {}};
+  Prepared prepared{.samples = take.samples, .knowledge = {}, .bones = {}, .spans = {}};
   prepared.spans = windows(method, take.frames(), {});
   if (method.body == BodyRules::on && has_body(take)) look_at_body(rate_of(take), method, prepared);
   return prepared;
@@ -213,11 +131,12 @@ struct Group {
   std::vector<std::size_t> takes;
 };
 
-// By columns and by what the method depends on, in order of the takes; those that stand still are
-// in none.
-std::vector<Group> group_alike(std::span<const MovingPart> parts, Rejection reject) {
+// Some of the takes, by columns and by what the method depends on; those that stand still are in
+// none.
+std::vector<Group> group_alike(std::span<const MovingPart> parts, std::span<const std::size_t> some,
+                               Rejection reject) {
   std::vector<Group> groups;
-  for (std::size_t t = 0; t < parts.size(); ++t) {
+  for (const std::size_t t : some) {
     if (parts[t].columns.empty()) continue;
     MatrixNormal method = matrix_normal_of(parts[t].clip, reject);
     const auto alike = [&](const Group& group) {
@@ -318,6 +237,62 @@ Denoised result_of(const Clip& take, const Prepared& prepared, const Solution& s
   return result;
 }
 
+// Where samples were rejected though a bone says that they are right: accelerations that were taken
+// for errors, [frames x joints].
+Mask rejected_motion(const MovingPart& part, const Prepared& prepared, const Denoised& result) {
+  const NoisyBones& bones = prepared.bones;
+  if (bones.empty()) return {};
+  Mask rejected(bones.off.rows(), bones.off.cols());
+  Matrix displaced(rejected.rows(), rejected.cols());
+  for (Index j = 0; j < rejected.cols(); ++j) {
+    const auto samples = part.clip.samples.middleCols<3>(3 * j);
+    const auto trusted = result.trusted->middleCols<3>(3 * j);
+    rejected.col(j) = (!samples.array().isNaN() && !trusted).rowwise().any();
+    const auto off = (samples - result.clip.samples.middleCols<3>(3 * j)).rowwise().norm();
+    displaced.col(j) = rejected.col(j).select(off, 0) / std::max(bones.noise(j), 1e-300);
+  }
+  return turning_in_noise(rejected, bones, displaced);
+}
+
+// Solves the windows of takes, in groups of those alike, and tells the progress of all.
+class Solving {
+ public:
+  Solving(std::span<const MovingPart> parts, std::span<const Prepared> prepared, Rejection reject,
+          Backend& backend, const Monitor& monitor)
+      : parts_(parts), prepared_(prepared), reject_(reject), backend_(backend), monitor_(monitor) {}
+
+  // Puts the results of some takes in their places.
+  void solve(std::span<const std::size_t> some, std::vector<Denoised>& results) {
+    for (const std::size_t t : some)
+      progress_.total += static_cast<Index>(prepared_[t].spans.size());
+    for (Group& group : group_alike(parts_, some, reject_)) solve(group, results);
+  }
+
+ private:
+  void solve(Group& group, std::vector<Denoised>& results) {
+    Monitor part{.stop = monitor_.stop};
+    if (monitor_.report)
+      part.report = [&](const Progress& own) {
+        monitor_.report({.finished = progress_.finished + own.finished, .total = progress_.total});
+      };
+    const SegmentBatch data = stack(prepared_, group);
+    const Solution solution = backend_.solve(data, std::move(group.method), part);
+    progress_.finished += data.segments();
+    Index segment = 0;
+    for (const std::size_t t : group.takes) {
+      results[t] = result_of(parts_[t].clip, prepared_[t], solution, segment);
+      segment += static_cast<Index>(prepared_[t].spans.size());
+    }
+  }
+
+  std::span<const MovingPart> parts_;
+  std::span<const Prepared> prepared_;
+  Rejection reject_;
+  Backend& backend_;
+  const Monitor& monitor_;
+  Progress progress_;
+};
+
 // The result of a take of which nothing moves.
 Denoised at_rest(const Clip& take) {
   const Clip none{.samples = Matrix(take.frames(), 0), .columns = {}, .frame_rate = 0, .unit = ""};
@@ -351,29 +326,23 @@ std::vector<Denoised> AutomaticDenoiser::denoise(std::span<const Clip> takes,
     const auto i = static_cast<std::size_t>(t);
     prepared[i] = prepare(parts[i].clip, method_);
   });
-  Progress all;
-  double frames = 0;
-  for (const Prepared& one : prepared) {
-    all.total += static_cast<Index>(one.spans.size());
-    frames += static_cast<double>(one.samples.rows());
-  }
-  Monitor part{.stop = monitor.stop};
-  if (monitor.report)
-    part.report = [&](const Progress& own) {
-      monitor.report({.finished = all.finished + own.finished, .total = all.total});
-    };
-
   std::vector<Denoised> results(takes.size());
-  for (Group& group : group_alike(parts, method_.reject)) {
-    const SegmentBatch data = stack(prepared, group);
-    const Solution solution = backend_.solve(data, std::move(group.method), part);
-    all.finished += data.segments();
-    Index segment = 0;
-    for (const std::size_t t : group.takes) {
-      results[t] = result_of(parts[t].clip, prepared[t], solution, segment);
-      segment += static_cast<Index>(prepared[t].spans.size());
-    }
+  std::vector<std::size_t> some(takes.size());
+  std::iota(some.begin(), some.end(), 0);
+  Solving solving(parts, prepared, method_.reject, backend_, monitor);
+  solving.solve(some, results);
+  if (method_.reject == Rejection::automatic) {
+    std::erase_if(some, [&](std::size_t t) {
+      const Mask motion = rejected_motion(parts[t], prepared[t], results[t]);
+      if (!motion.any()) return true;
+      Mask& vouched = prepared[t].knowledge.vouched;
+      vouched = vouched || motion;
+      return false;
+    });
+    solving.solve(some, results);
   }
+  double frames = 0;
+  for (const Prepared& one : prepared) frames += static_cast<double>(one.samples.rows());
   const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
   for (std::size_t t = 0; t < takes.size(); ++t) {
     if (parts[t].columns.empty()) results[t] = at_rest(takes[t]);

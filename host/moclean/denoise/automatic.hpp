@@ -12,7 +12,8 @@ namespace moclean {
 /// Whether what a take shows of its body is used.
 enum class BodyRules { on, off };
 
-/// Which observed samples may be rejected. automatic: as `on`. off: none; what is observed counts,
+/// Which observed samples may be rejected. automatic: as `on`, but where bones say that quick
+/// motion was rejected, it is kept, and the take solved again. off: none; what is observed counts,
 /// whatever it is. gentle: what twice the usual residual speaks against, and lost zeros; distances
 /// reject nothing. on: what distances or residuals speak against.
 enum class Rejection { automatic, off, gentle, on };
