@@ -149,7 +149,7 @@ TEST(Automatic, ScalesWithTheUnitOfLength) {
   const Clip noisy = with_bursts(limbs(300), 20);
   const Clip expected = cleaned(noisy).clip;
 
-  for (const double scale : {1e-3, 1e3}) {
+  for (const double scale : {1e-3, 1e3, 1e-301, 1e200}) {
     Clip scaled = noisy;
     scaled.samples *= scale;
     EXPECT_LE(test::relative_difference(cleaned(scaled).clip.samples / scale, expected.samples),

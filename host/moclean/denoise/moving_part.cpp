@@ -77,6 +77,17 @@ Eigen::RowVectorXd centres(const std::vector<Joint>& all, const MovingPart& part
   return centre;
 }
 
+// The unit in which squares of the samples and of what is left of them are normal numbers.
+double unit_of(const Matrix& samples) {
+  constexpr int most = 300;  // of 1023
+  double largest = 0;
+  for (const double x : samples.reshaped())
+    if (!std::isnan(x)) largest = std::max(largest, std::abs(x));
+  if (largest == 0) return 1;
+  const int exponent = std::ilogb(largest);
+  return std::abs(exponent) < most ? 1 : std::ldexp(1., exponent);
+}
+
 // The motion of the take, given that of the part.
 Matrix motion_of(const Clip& take, const MovingPart& part, const Matrix& moved) {
   constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
@@ -86,7 +97,7 @@ Matrix motion_of(const Clip& take, const MovingPart& part, const Matrix& moved) 
     for (Index i = 0; i < take.frames(); ++i) {
       const double was = part.clip.samples(i, p), is = moved(i, p);
       const bool unchanged = std::abs(is - was) <= rounding * std::abs(was);
-      motion(i, c) = unchanged ? take.samples(i, c) : is + part.centre(c);
+      motion(i, c) = unchanged ? take.samples(i, c) : is * part.unit + part.centre(c);
     }
   }
   for (Index c = 0; c < motion.cols(); ++c)
@@ -118,6 +129,8 @@ MovingPart moving_part(const Clip& take, bool find_lost) {
     part.clip.samples.col(p) = samples.col(c).array() - part.centre(c);
     part.clip.columns.push_back(take.columns[static_cast<std::size_t>(c)]);
   }
+  part.unit = unit_of(part.clip.samples);
+  part.clip.samples /= part.unit;
   return part;
 }
 
@@ -127,7 +140,7 @@ void put_back(const Clip& take, const MovingPart& part, Denoised& result) {
   Matrix sigma = trusted.select(Matrix::Zero(take.frames(), trusted.cols()), missing);
   for (std::size_t p = 0; p < part.columns.size(); ++p) {
     const Index c = part.columns[p];
-    sigma.col(c) = result.sigma->samples.col(static_cast<Index>(p));
+    sigma.col(c) = part.unit * result.sigma->samples.col(static_cast<Index>(p));
     if (part.still[static_cast<std::size_t>(c)]) continue;
     trusted.col(c) = result.trusted->col(static_cast<Index>(p));
   }

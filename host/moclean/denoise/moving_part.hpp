@@ -15,6 +15,8 @@ struct MovingPart {
   Eigen::RowVectorXd medians;    ///< [columns of the take], 0 for one without a sample
   Eigen::RowVectorXd centre;     ///< [columns of the take], taken from every sample: see below
   std::vector<bool> still = {};  ///< [columns of the take]: all its samples are the same
+  double unit = 1;               ///< of the clip's samples, a power of two: not 1
+                    ///< only where squares of lengths would leave the range of a double
 };
 
 /// The centre of a column of no joint is its median. Joints have one centre together, so that their

@@ -23,8 +23,8 @@ double deviation_of(const Matrix& samples, Index column) {
   return sizes.empty() ? 0 : deviation_per_mad * median(sizes);
 }
 
-// |autocorrelation| of a column at a lag, over pairs within the bound, which is the unit; nothing
-// for too few pairs.
+// Autocorrelation of a column at a lag, over pairs within the bound, which is the unit; nothing for
+// too few pairs.
 std::optional<double> correlation(const Matrix& samples, Index column, Index lag, double bound) {
   double products = 0, before = 0, after = 0;
   Index pairs = 0;
@@ -37,7 +37,7 @@ std::optional<double> correlation(const Matrix& samples, Index column, Index lag
     ++pairs;
   }
   if (pairs < fewest_pairs || !(before > 0 && after > 0)) return {};
-  return std::abs(products) / std::sqrt(before * after);
+  return products / std::sqrt(before * after);
 }
 
 }  // namespace
@@ -49,12 +49,12 @@ bool smooth_in_time(const MovingPart& part) {
   std::vector<double> deviations, middles;
   for (Index c = 0; c < samples.cols(); ++c) {
     const Index own = part.columns[static_cast<std::size_t>(c)];
-    samples.col(c).array() -= part.medians(own) - part.centre(own);
+    samples.col(c).array() -= (part.medians(own) - part.centre(own)) / part.unit;
     const double deviation = deviation_of(samples, c);
     if (!(deviation > 0)) continue;
     columns.push_back(c);
     deviations.push_back(deviation);
-    middles.push_back(part.medians(own));
+    middles.push_back(part.medians(own) / part.unit);
   }
   if (columns.size() < fewest_columns) return true;
   for (const Index lag : lags) {
@@ -62,7 +62,10 @@ bool smooth_in_time(const MovingPart& part) {
     for (std::size_t c = 0; c < columns.size(); ++c)
       if (const auto r = correlation(samples, columns[c], lag, outlying * deviations[c]))
         found.push_back(*r);
-    if (found.size() < fewest_columns || quantile(found, share) >= least_correlation) return true;
+    if (found.size() < fewest_columns) return true;
+    if (lag == 1 && quantile(found, share) <= -least_correlation) break;  // back and forth
+    for (double& r : found) r = std::abs(r);
+    if (quantile(found, share) >= least_correlation) return true;
   }
   const double middle = median(middles);
   for (double& x : middles) x = std::abs(x - middle);

@@ -7,7 +7,8 @@ namespace moclean {
 /// Whether a frame tells anything of those after it, so that there is a motion to smooth. False
 /// only on clear evidence: of at least four columns, each over 1.4826 times its median absolute
 /// deviation and without samples beyond three of those, three quarters have an autocorrelation
-/// below 0.2 at each of the lags 1, 2, 3, 4, 6 and 8; and the columns' own deviation is no less
+/// of less than 0.2, in size, at each of the lags 1, 2, 3, 4, 6 and 8, or one below -0.2 at lag 1:
+/// they go back and forth with every frame; and the columns' own deviation is no less
 /// than that between their medians: noise about a body at rest is small beside the body. Takes of
 /// fewer than 20 frames always pass.
 ///
