@@ -12,12 +12,13 @@ if(MOCLEAN_SANITIZE)
   target_link_options(moclean_flags INTERFACE -fsanitize=${MOCLEAN_SANITIZE})
 endif()
 
-# moclean_unoptimised(TARGET SCOPE): with sanitizers the target compiles at -O0, in half the time; with the
-# scope PUBLIC what links to it does, too. Only for sources that leave the work to the library. Of an inline
-# function that both hold the linker takes what comes first: that has to be the library's, for Eigen
-# crawls at -O0.
+option(MOCLEAN_UNOPTIMISED "Compile the tests, and with sanitizers the program's commands, at -O0" OFF)
+
+# moclean_unoptimised(TARGET SCOPE): the target compiles at -O0, in half the time; with the scope PUBLIC what
+# links to it does, too. Only for sources that leave the work to the library. Of an inline function that
+# both hold the linker takes what comes first: that has to be the library's, for Eigen crawls at -O0.
 function(moclean_unoptimised target scope)
-  if(MOCLEAN_SANITIZE)
+  if(MOCLEAN_UNOPTIMISED)
     target_compile_options(${target} ${scope} -O0)
     target_link_options(${target} INTERFACE
                         LINKER:--whole-archive,$<TARGET_FILE:moclean>,--no-whole-archive)

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <thread>
 
+#include <CLI/CLI.hpp>
+
 #include "moclean/core/error.hpp"
 #include "moclean/solve/opencl/opencl_backend.hpp"
 

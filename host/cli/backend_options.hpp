@@ -4,10 +4,12 @@
 #include <optional>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
 #include "moclean/linalg/precision.hpp"
 #include "moclean/linalg/tuning.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace moclean::cli {
 

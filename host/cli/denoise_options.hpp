@@ -5,12 +5,14 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "moclean/denoise/chain.hpp"
 
 #include "cli/backend_options.hpp"
 #include "cli/inputs.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace moclean::cli {
 

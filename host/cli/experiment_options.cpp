@@ -1,5 +1,7 @@
 #include "cli/experiment_options.hpp"
 
+#include <CLI/CLI.hpp>
+
 #include "moclean/solve/opencl/opencl_backend.hpp"
 
 namespace moclean::cli {

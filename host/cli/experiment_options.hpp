@@ -4,12 +4,14 @@
 #include <filesystem>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "moclean/experiment/paper_tables.hpp"
 
 #include "cli/backend_options.hpp"
 #include "cli/inputs.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace moclean::cli {
 

@@ -5,9 +5,11 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
-
 #include "moclean/motion/clip.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace moclean::cli {
 

@@ -1,4 +1,4 @@
-# cmake -D BUILD=... -D GENERATOR=... -D COMPILER=... -D FLAGS=... -D WORK=... -P run.cmake
+# cmake -D BUILD=... -D GENERATOR=... -D COMPILER=... -D WORK=... -P run.cmake
 # Installs the project built in BUILD to WORK/prefix, then configures, builds and runs the project
 # beside this file against it.
 file(REMOVE_RECURSE ${WORK}/prefix ${WORK}/build)
@@ -13,7 +13,7 @@ endfunction()
 
 step("installing" ${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/prefix)
 step("configuring the consumer" ${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/project -B ${WORK}/build
-     -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_CXX_FLAGS=${FLAGS}
+     -G ${GENERATOR} -D CMAKE_CXX_COMPILER=${COMPILER}
      -D CMAKE_BUILD_TYPE=Release -D CMAKE_PREFIX_PATH=${WORK}/prefix)
 step("building the consumer" ${CMAKE_COMMAND} --build ${WORK}/build)
 step("running the consumer" ${WORK}/build/consumer)

@@ -1,9 +1,8 @@
 #include "moclean/linalg/group_eigen.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <gtest/gtest.h>
 
+#include "support/decompositions.hpp"
 #include "support/device.hpp"
 #include "support/matrix.hpp"
 #include "support/squares.hpp"
@@ -101,7 +100,7 @@ TEST_P(GroupEigenTest, DecomposesEveryKindOfMatrixToRounding) {
     expect_accurate(matrices[b], result, b);
     const double scale = std::max(matrices[b].cwiseAbs().maxCoeff(), 1e-300);
     const Matrix g = matrices[b] / scale;
-    const Eigen::VectorXd expected = Eigen::SelfAdjointEigenSolver<Matrix>(g).eigenvalues();
+    const Eigen::VectorXd expected = test::eigenvalues(g);
     EXPECT_LE((result.values[b].head(n) / scale - expected.reverse()).norm(),
               test::tolerance::eigen_residual() * g.norm());
   }
@@ -266,7 +265,7 @@ TEST(GroupEigen, KeepsSmallEigenvaluesOfGradedMatricesToRelativeAccuracy) {
   Matrix factor = test::random_matrix(200, n, 10);
   for (Index j = 0; j < n; ++j)
     factor.col(j) *= std::pow(10, -8.0 * static_cast<double>(j) / (n - 1));
-  const Eigen::VectorXd sigma = Eigen::JacobiSVD<Eigen::MatrixXd>(factor).singularValues();
+  const Eigen::VectorXd sigma = test::singular_values(factor);
 
   const Decomposition result = decompose({}, {Matrix(factor.transpose() * factor)});
 

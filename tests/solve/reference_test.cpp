@@ -1,10 +1,10 @@
 #include <cmath>
 
-#include <Eigen/SVD>
 #include <gtest/gtest.h>
 
 #include "moclean/solve/reference/robust_pca.hpp"
 
+#include "support/decompositions.hpp"
 #include "support/matrix.hpp"
 #include "support/planted.hpp"
 #include "support/tolerance.hpp"
@@ -14,10 +14,7 @@ namespace {
 
 using test::planted;
 using test::relative_difference;
-
-Eigen::VectorXd singular_values(const Matrix& x) {
-  return Eigen::JacobiSVD<Eigen::MatrixXd>(x).singularValues();
-}
+using test::singular_values;
 
 class RobustPcaInBothOrders : public testing::TestWithParam<UpdateOrder> {
  protected:

@@ -1,8 +1,8 @@
 #include "moclean/solve/reference/svd.hpp"
 
-#include <Eigen/SVD>
 #include <gtest/gtest.h>
 
+#include "support/decompositions.hpp"
 #include "support/matrix.hpp"
 #include "support/tolerance.hpp"
 
@@ -28,7 +28,7 @@ void expect_decomposes(const MatrixXd& x) {
   EXPECT_TRUE((svd.sigma.array() >= 0).all());
   for (Index i = 1; i < k; ++i) EXPECT_LE(svd.sigma(i), svd.sigma(i - 1));
 
-  const Eigen::VectorXd jacobi = Eigen::JacobiSVD<MatrixXd>(x).singularValues();
+  const Eigen::VectorXd jacobi = test::singular_values(x);
   EXPECT_LE((svd.sigma - jacobi).cwiseAbs().maxCoeff(), bound * jacobi(0));
 }
 

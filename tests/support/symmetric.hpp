@@ -6,8 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/QR>
-
+#include "support/decompositions.hpp"
 #include "support/matrix.hpp"
 
 namespace moclean::test {
@@ -21,7 +20,7 @@ struct SymmetricKind {
 /// Q diag(values) Q' with a random orthogonal Q.
 inline Matrix with_spectrum(const Eigen::VectorXd& values, std::uint64_t seed) {
   const Matrix random = random_matrix(values.size(), values.size(), seed);
-  const Matrix q = Eigen::HouseholderQR<Matrix>(random).householderQ();
+  const Matrix q = orthogonal_factor(random);
   return q * values.asDiagonal() * q.transpose();
 }
 
