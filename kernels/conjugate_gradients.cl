@@ -1,14 +1,15 @@
-// Preconditioned conjugate gradients for W o S + Delta'Delta S R = W o D, Delta the second
-// difference over the rows of a segment, R symmetric positive definite [columns x columns]; one
-// system per segment, in the notation of host/moclean/solve/reference/matrix_normal.cpp:
+// Preconditioned conjugate gradients for W o S + Delta'P Delta S R = W o D, Delta the second
+// difference over the rows of a segment, P a diagonal of their precisions, R symmetric positive
+// definite [columns x columns]; one system per segment, in the notation of
+// host/moclean/solve/reference/matrix_normal.cpp:
 //
-//   factor      M = diag(W_j + least) + R_jj Delta'Delta = L diag(pivot) L' per column j
-//   direction   p = z + beta p,  q = W o p + Delta'Delta p R,  p.q per block: search_direction.cl
+//   factor      M = diag(W_j + least) + R_jj Delta'P Delta = L diag(pivot) L' per column j
+//   direction   p = z + beta p,  q = W o p + Delta'P Delta p R,  p.q per block: search_direction.cl
 //   start       r = W o D - q,   z = M^-1 r,  r.z and b.M^-1 b for b = W o D per vector of columns
 //   update      S += alpha p,  r -= alpha q,  z = M^-1 r,  r.z per vector of columns
 //
 // A segment whose r.z has come down to `tolerance`^2 of b.M^-1 b is left as it is.
-// Every L has two bands; the second is R_jj / pivot two rows up, and is not stored.
+// Every L has two bands; the second is P R_jj / pivot two rows up, and is not stored.
 //
 // Launch: (vectors of columns, active segments). With vectors of one real neighbouring work-items
 // read neighbouring reals, as a GPU likes it.
@@ -20,6 +21,7 @@
 kernel void factor(global const segment_t* segments,  // [segments]
                    global const int* active,          // [active segments]
                    global const real* weights,        // W, [rows x pitch] stacked
+                   global const real* precisions,     // P, one per row, stacked
                    global const real* stiffness,      // R_jj, one vector per segment
                    global const real* least,          // [segments]
                    global real* inverse_pivot,        // [rows x pitch] stacked
@@ -31,11 +33,13 @@ kernel void factor(global const segment_t* segments,  // [segments]
   size_t at = s.first_row * s.pitch + column;
   vreal inverse1 = 0, inverse2 = 0, l = 0;
   for (int i = 0; i < s.rows; ++i, at += s.pitch) {
-    const real c0 = coupled(i, s.rows), c1 = coupled(i - 1, s.rows), c2 = coupled(i - 2, s.rows);
-    const vreal u = q * (-2 * (c1 + c2)) - c2 * q * l;  // L(i, i - 1) pivot(i - 1)
+    const real c0 = precision_at(precisions, s, i), c1 = precision_at(precisions, s, i - 1);
+    const real c2 = precision_at(precisions, s, i - 2);
+    const vreal q2 = c2 * q;                        // L(i, i - 2) pivot(i - 2)
+    const vreal u = q * (-2 * (c1 + c2)) - q2 * l;  // L(i, i - 1) pivot(i - 1)
     l = u * inverse1;
     vreal pivot = load(weights + at) + least[b] + (c0 + 4 * c1 + c2) * q;
-    pivot -= u * l + c2 * q * q * inverse2;
+    pivot -= u * l + q2 * q2 * inverse2;
     inverse2 = inverse1;
     inverse1 = 1 / pivot;
     store(inverse_pivot + at, inverse1);
@@ -44,7 +48,7 @@ kernel void factor(global const segment_t* segments,  // [segments]
 }
 
 // z = L'^-1 diag(1 / pivot) y from the last row on; returns the sum of r z.
-INLINE vreal solve_upwards(const segment_t s, vreal q, size_t begin,
+INLINE vreal solve_upwards(const segment_t s, global const real* precisions, vreal q, size_t begin,
                            global const real* inverse_pivot, global const real* first_band,
                            global const real* r, global real* z) {
   vreal z1 = 0, z2 = 0, l1 = 0, sum = 0;
@@ -57,7 +61,7 @@ INLINE vreal solve_upwards(const segment_t s, vreal q, size_t begin,
     PREFETCH(first_band + next);
     PREFETCH(r + next);
     const vreal inverse = load(inverse_pivot + at);
-    const vreal l2 = coupled(i, s.rows) * q * inverse;  // L(i + 2, i)
+    const vreal l2 = precision_at(precisions, s, i) * q * inverse;  // L(i + 2, i)
     const vreal value = fma(-l1, z1, fma(-l2, z2, load(z + at) * inverse));
     store(z + at, value);
     sum = fma(load(r + at), value, sum);
@@ -73,13 +77,13 @@ INLINE vreal next_downwards(vreal r, vreal l1, vreal l2, vreal y1, vreal y2) {
   return fma(-l1, y1, fma(-l2, y2, r));
 }
 
-INLINE vreal solve_downwards(const segment_t s, vreal q, size_t begin,
-                             global const real* inverse_pivot, global const real* first_band,
-                             global const real* r, global real* z) {
+INLINE vreal solve_downwards(const segment_t s, global const real* precisions, vreal q,
+                             size_t begin, global const real* inverse_pivot,
+                             global const real* first_band, global const real* r, global real* z) {
   vreal y1 = 0, y2 = 0, inverse1 = 0, inverse2 = 0;
   size_t at = begin;
   for (int i = 0; i < s.rows; ++i, at += s.pitch) {
-    const vreal l2 = coupled(i - 2, s.rows) * q * inverse2;
+    const vreal l2 = precision_at(precisions, s, i - 2) * q * inverse2;
     const vreal y = next_downwards(load(r + at), load(first_band + at), l2, y1, y2);
     store(z + at, y);
     y2 = y1;
@@ -87,17 +91,18 @@ INLINE vreal solve_downwards(const segment_t s, vreal q, size_t begin,
     inverse2 = inverse1;
     inverse1 = load(inverse_pivot + at);
   }
-  return solve_upwards(s, q, begin, inverse_pivot, first_band, r, z);
+  return solve_upwards(s, precisions, q, begin, inverse_pivot, first_band, r, z);
 }
 
 kernel void start(global const segment_t* segments,  // [segments]
                   global const int* active,          // [active segments]
                   global const real* data,           // D, [rows x pitch] stacked
                   global const real* weights,        // W, [rows x pitch] stacked
+                  global const real* precisions,     // P, one per row, stacked
                   global const real* stiffness,      // R_jj, one vector per segment
                   global const real* inverse_pivot,  // [rows x pitch] stacked
                   global const real* first_band,     // [rows x pitch] stacked
-                  global const real* product,        // q = W o S + Delta'Delta S R, stacked
+                  global const real* product,        // q = W o S + Delta'P Delta S R, stacked
                   global real* r,                    // [rows x pitch] stacked
                   global real* z,                    // [rows x pitch] stacked
                   global double* rz,                 // [segments x vectors of columns]
@@ -110,13 +115,14 @@ kernel void start(global const segment_t* segments,  // [segments]
   const size_t end = begin + s.rows * (size_t)s.pitch;
   for (size_t at = begin; at < end; at += s.pitch)
     store(r + at, load(weights + at) * load(data + at));
-  bz[place] = lane_sum(solve_downwards(s, q, begin, inverse_pivot, first_band, r, z));
+  bz[place] = lane_sum(solve_downwards(s, precisions, q, begin, inverse_pivot, first_band, r, z));
   for (size_t at = begin; at < end; at += s.pitch) store(r + at, load(r + at) - load(product + at));
-  rz[place] = lane_sum(solve_downwards(s, q, begin, inverse_pivot, first_band, r, z));
+  rz[place] = lane_sum(solve_downwards(s, precisions, q, begin, inverse_pivot, first_band, r, z));
 }
 
 kernel void update(global const segment_t* segments,       // [segments]
                    global const int* active,               // [active segments]
+                   global const real* precisions,          // P, one per row, stacked
                    global const real* stiffness,           // R_jj, one vector per segment
                    global const real* inverse_pivot,       // [rows x pitch] stacked
                    global const real* first_band,          // [rows x pitch] stacked
@@ -154,7 +160,7 @@ kernel void update(global const segment_t* segments,       // [segments]
     store(motion + at, fma(alpha, load(p + at), load(motion + at)));
     const vreal rest = fma(-alpha, load(product + at), load(r + at));
     store(r + at, rest);
-    const vreal l2 = coupled(i - 2, s.rows) * q * inverse2;
+    const vreal l2 = precision_at(precisions, s, i - 2) * q * inverse2;
     const vreal y = next_downwards(rest, load(first_band + at), l2, y1, y2);
     store(z + at, y);
     y2 = y1;
@@ -162,5 +168,6 @@ kernel void update(global const segment_t* segments,       // [segments]
     inverse2 = inverse1;
     inverse1 = load(inverse_pivot + at);
   }
-  rz_next[place] = lane_sum(solve_upwards(s, q, begin, inverse_pivot, first_band, r, z));
+  rz_next[place] =
+      lane_sum(solve_upwards(s, precisions, q, begin, inverse_pivot, first_band, r, z));
 }

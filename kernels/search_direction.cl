@@ -1,9 +1,9 @@
 // The next direction of conjugate gradients and its product, in the notation of
 // conjugate_gradients.cl, a work-item per block of rows:
 //
-//   direction   p = z + beta p,  q = W o p + Delta'Delta p R,  p.q per block
+//   direction   p = z + beta p,  q = W o p + Delta'P Delta p R,  p.q per block
 //
-// Delta'Delta p is kept for CHUNK rows at a time. Launch: one work-item per block of rows.
+// Delta'P Delta p is kept for CHUNK rows at a time. Launch: one work-item per block of rows.
 
 #include "conjugate_sums.cl"
 #include "tiles.cl"
@@ -14,7 +14,7 @@
 
 // What a block works on.
 typedef struct {
-  global const real *z, *p_before;
+  global const real *z, *p_before, *precisions;
   real beta;
   size_t begin;  // of the segment
 } search_t;
@@ -24,12 +24,13 @@ INLINE vreal direction_at(const search_t c, const segment_t s, int row, int colu
   return c.beta == 0 ? load(c.z + at) : fma((vreal)c.beta, load(c.p_before + at), load(c.z + at));
 }
 
-// Second difference that begins with frame k, given its first two rows; 0 beyond the ends.
-INLINE vreal acceleration(const segment_t s, int k, vreal p0, vreal p1, vreal p2) {
-  return coupled(k, s.rows) * (p0 - 2 * p1 + p2);
+// P times the second difference of three rows from k on; 0 beyond the ends.
+INLINE vreal weighted_acceleration(const search_t c, const segment_t s, int k, vreal p0, vreal p1,
+                                   vreal p2) {
+  return precision_at(c.precisions, s, k) * (p0 - 2 * p1 + p2);
 }
 
-// p for the rows [row, end) of a vector of columns, and Delta'Delta p to `scratch`.
+// p for the rows [row, end) of a vector of columns, and Delta'P Delta p to `scratch`.
 INLINE void differences(const search_t c, const segment_t s, int row, int end, int column,
                         global real* p, global real* scratch) {
   const int last = s.rows - 1;
@@ -37,10 +38,11 @@ INLINE void differences(const search_t c, const segment_t s, int row, int end, i
   vreal near = direction_at(c, s, max(row - 1, 0), column);
   vreal p0 = direction_at(c, s, row, column);
   vreal p1 = direction_at(c, s, min(row + 1, last), column);
-  vreal a2 = acceleration(s, row - 2, far, near, p0), a1 = acceleration(s, row - 1, near, p0, p1);
+  vreal a2 = weighted_acceleration(c, s, row - 2, far, near, p0);
+  vreal a1 = weighted_acceleration(c, s, row - 1, near, p0, p1);
   for (int i = row; i < end; ++i) {
     const vreal p2 = direction_at(c, s, min(i + 2, last), column);
-    const vreal a0 = acceleration(s, i, p0, p1, p2);
+    const vreal a0 = weighted_acceleration(c, s, i, p0, p1, p2);
     store(p + c.begin + i * (size_t)s.pitch + column, p0);
     store(scratch + (i - row) * (size_t)s.pitch + column, a2 - 2 * a1 + a0);
     a2 = a1;
@@ -52,7 +54,7 @@ INLINE void differences(const search_t c, const segment_t s, int row, int end, i
 
 // What the products of a chunk need, from its first row on.
 typedef struct {
-  global const real *scratch, *R;  // Delta'Delta p
+  global const real *scratch, *R;  // Delta'P Delta p
   global const real *weights, *p;
   global real* product;
   global const real *z_next, *p_next;  // what the next chunk begins with
@@ -113,6 +115,7 @@ kernel void direction(global const segment_t* segments,  // [segments]
                       int block_count,
                       global const real* weights,      // W, [rows x pitch] stacked
                       global const real* R,            // order x order matrices
+                      global const real* precisions,   // P, one per row, stacked
                       global const real* z,            // [rows x pitch] stacked
                       global const real* p_before,     // [rows x pitch] stacked
                       global const double* rz,         // [segments x vectors of columns]
@@ -132,7 +135,7 @@ kernel void direction(global const segment_t* segments,  // [segments]
   const stage_t stage = stage_of(rz, rz_before, bz, block.segment, s, tolerance, begins);
   if (stage.enough) return;
   if (tolerance >= 0 && block.block == 0) ++iterations[block.segment];
-  const search_t c = {z, p_before, stage.beta, s.first_row * s.pitch};
+  const search_t c = {z, p_before, precisions, stage.beta, s.first_row * s.pitch};
   const int end = block_end(block, s);
   global real* own = scratch + (s.first_block + block.block) * (size_t)(CHUNK * s.pitch);
   vreal sum = 0;

@@ -2,7 +2,7 @@
 // product, in the notation of conjugate_gradients.cl, a work-group of WG work-items per block of
 // rows, on both sides of a product of its own (products_group.cl):
 //
-//   differences   p = z + beta p,  C = Delta'Delta p
+//   differences   p = z + beta p,  C = Delta'P Delta p
 //   (apply        q = C R)
 //   complete      q = W o p + q,   p.q per block
 //
@@ -21,6 +21,7 @@
 // p of a segment, which `differences` works out wherever it needs it.
 typedef struct {
   global const real *z, *p_before;  // at the first entry of the segment
+  global const real* precisions;    // of all segments
   real beta;
 } search_t;
 
@@ -29,16 +30,16 @@ INLINE real direction_at(const search_t c, const segment_t s, int row, int colum
   return c.beta == 0 ? c.z[at] : fma(c.beta, c.p_before[at], c.z[at]);
 }
 
-// Entry (i, column) of Delta'Delta p, given p0 = p(i, column).
+// Entry (i, column) of Delta'P Delta p, given p0 = p(i, column).
 INLINE real curvature(const search_t c, const segment_t s, int i, int column, real p0) {
   const int last = s.rows - 1;
   const real far = direction_at(c, s, max(i - 2, 0), column);
   const real near = direction_at(c, s, max(i - 1, 0), column);
   const real p1 = direction_at(c, s, min(i + 1, last), column);
   const real p2 = direction_at(c, s, min(i + 2, last), column);
-  const real a2 = coupled(i - 2, s.rows) * (far - 2 * near + p0);
-  const real a1 = coupled(i - 1, s.rows) * (near - 2 * p0 + p1);
-  const real a0 = coupled(i, s.rows) * (p0 - 2 * p1 + p2);
+  const real a2 = precision_at(c.precisions, s, i - 2) * (far - 2 * near + p0);
+  const real a1 = precision_at(c.precisions, s, i - 1) * (near - 2 * p0 + p1);
+  const real a0 = precision_at(c.precisions, s, i) * (p0 - 2 * p1 + p2);
   return a2 - 2 * a1 + a0;
 }
 
@@ -48,6 +49,7 @@ kernel __attribute__((reqd_work_group_size(WG, 1, 1))) void differences(
     int block_count,                   // of active blocks
     global const real* z,              // [rows x pitch] stacked
     global const real* p_before,       // [rows x pitch] stacked
+    global const real* precisions,     // P, one per row, stacked
     global const double* rz,           // [segments x vectors of columns]
     global const double* rz_before,    // [segments x vectors of columns]
     global const double* bz,           // [segments x vectors of columns]
@@ -63,7 +65,7 @@ kernel __attribute__((reqd_work_group_size(WG, 1, 1))) void differences(
   if (stage.enough) return;
   if (tolerance >= 0 && block.block == 0 && get_local_id(0) == 0) ++iterations[block.segment];
   const size_t begin = s.first_row * s.pitch;
-  const search_t c = {z + begin, p_before + begin, stage.beta};
+  const search_t c = {z + begin, p_before + begin, precisions, stage.beta};
   const uint pitch = s.pitch, end = block_end(block, s) * pitch;
   for (uint i = block_begin(block, s) * pitch + get_local_id(0); i < end; i += WG) {
     const int row = i / pitch, column = i - row * pitch;

@@ -32,25 +32,40 @@ MotionEstimate estimate_of(Index frames, Index columns, std::uint64_t seed) {
           .drawn_variance = Matrix::Constant(frames, columns, infinite),
           .eigenvectors = model.eigenvectors,
           .spectrum = model.spectrum,
+          .precision = Eigen::VectorXd::Ones(frames - 2),
           .noise = 0,
           .size = 10,
           .floor = 1e-4,
           .joint_columns = 3};
 }
 
-TEST(EndExcess, IsThatOfThePosterior) {
-  constexpr Index frames = 300;
-  const Eigen::MatrixXd delta = second_differences(frames);
-  for (const double ratio : {1e3, 1e5}) {  // noise over power
-    const Eigen::MatrixXd posterior =
-        (Eigen::MatrixXd::Identity(frames, frames) + ratio * delta.transpose() * delta).inverse();
+TEST(VarianceLeft, IsTheDiagonalOfTheInverse) {
+  for (const Index frames : {3, 4, 60}) {
+    const Eigen::VectorXd precision = test::random_matrix(frames - 2, 1, 1).col(0).cwiseAbs2();
+    const Eigen::MatrixXd delta = second_differences(frames);
+    const Eigen::Vector3d ratios(1e-6, 1, 1e4);  // noise over power
 
-    for (const Index i : {0, 1, 5, 12, 30})
-      EXPECT_NEAR(posterior(i, i) / kept_power(ratio, 1),
-                  1 + end_excess(static_cast<double>(i) + 0.5, ratio, 1), 5e-3)
-          << ratio << " " << i;
+    const Matrix left = variance_left(ratios, precision);
+
+    for (Index k = 0; k < 3; ++k) {
+      const Eigen::MatrixXd posterior =
+          (Eigen::MatrixXd::Identity(frames, frames) +
+           ratios(k) * delta.transpose() * precision.asDiagonal() * delta)
+              .inverse();
+      EXPECT_LE((left.col(k) - posterior.diagonal()).cwiseAbs().maxCoeff(), 1e-9)
+          << frames << " " << k;
+    }
   }
-  EXPECT_DOUBLE_EQ(end_excess(0, 1, 1), 3);
+}
+
+// Far from the ends, and four times that at them.
+TEST(VarianceLeft, IsTheKeptPower) {
+  const Eigen::VectorXd ratio = Eigen::VectorXd::Constant(1, 1e5);
+
+  const Matrix left = variance_left(ratio, Eigen::VectorXd::Ones(598));
+
+  EXPECT_NEAR(left(300, 0) / kept_power(1e5, 1), 1, 1e-6);
+  EXPECT_NEAR(left(0, 0) / kept_power(1e5, 1), 4, 0.2);
 }
 
 TEST(ConditionalVariance, IsThatOfTheColumnsNotInUse) {
@@ -95,7 +110,18 @@ TEST(MarginalDeviation, HasTheProfileOfThePosteriorUnderNoise) {
   EXPECT_LE(learned, 1.5);  // eight times as many accelerations as columns
   for (Index j = 0; j < columns; ++j)
     for (const Index i : {0, 1, 4, 20, 60, 118, 119})
-      EXPECT_NEAR(variance(i, j) / posterior(j * frames + i), learned, 0.02 * learned) << i;
+      EXPECT_NEAR(variance(i, j) / posterior(j * frames + i), learned, 1e-6 * learned) << i;
+}
+
+TEST(MarginalDeviation, IsLargerWhereAccelerationsAre) {
+  MotionEstimate e = estimate_of(120, 9, 1);
+  e.noise = 20;
+  const Matrix even = marginal_deviation(e);
+  e.precision.segment(60, 5).setConstant(0.01);
+  const Matrix uneven = marginal_deviation(e);
+
+  EXPECT_GT(uneven(62, 4), 1.3 * even(62, 4));
+  EXPECT_NEAR(uneven(10, 4), even(10, 4), 1e-3 * even(10, 4));
 }
 
 TEST(MarginalDeviation, GrowsIntoAGapAndMoreWithoutNeighboursAndFarSide) {

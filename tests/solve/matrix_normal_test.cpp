@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -14,6 +15,7 @@
 
 #include "support/correlated_noise.hpp"
 #include "support/matrix.hpp"
+#include "support/model_motion.hpp"
 #include "support/synthetic_walk.hpp"
 #include "support/tolerance.hpp"
 
@@ -35,6 +37,13 @@ Matrix spoilt(Matrix motion, std::uint64_t seed) {
       if (random.uniform() < 0.5) motion(i, j) += 1 + 1.2 * random.normal();
   }
   return motion;
+}
+
+// 1 of all second differences.
+Eigen::VectorXd precisions(Index rows) {
+  Eigen::VectorXd result = Eigen::VectorXd::Ones(rows);
+  result.tail(2).setZero();
+  return result;
 }
 
 double rms(const Matrix& difference) {
@@ -60,8 +69,11 @@ TEST(Stiffness, IsTheSecondDifferenceTwice) {
   Matrix expected(4, 1);
   expected << 3, -5, 1, 1;
 
-  EXPECT_EQ(reference::stiffness(x), expected);
-  EXPECT_EQ(reference::stiffness(Matrix::Ones(2, 3)), Matrix::Zero(2, 3));
+  EXPECT_EQ(reference::stiffness(x, precisions(4)), expected);
+  EXPECT_EQ(reference::stiffness(Matrix::Ones(2, 3), precisions(2)), Matrix::Zero(2, 3));
+
+  expected << 6, -11, 4, 1;  // 2 times 3 (1, -2, 1, 0) and (0, 1, -2, 1)
+  EXPECT_EQ(reference::stiffness(x, Eigen::Vector4d(2, 1, 0, 0)), expected);
 }
 
 TEST(Smooth, SolvesItsSystem) {
@@ -70,23 +82,27 @@ TEST(Smooth, SolvesItsSystem) {
   const Matrix weights = test::random_matrix(m, n, 2).cwiseAbs();
   const Matrix half = test::random_matrix(n, n, 3);
   const Matrix R = half * half.transpose() + Matrix::Identity(n, n);
+  const Eigen::VectorXd precision =
+      precisions(m).cwiseProduct(test::random_matrix(m, 1, 4).col(0).cwiseAbs());
   Matrix S = Matrix::Zero(m, n);
 
-  const int taken = reference::smooth(data, weights, R, 500, 1e-14, S);
+  const int taken = reference::smooth(data, weights, precision, R, 500, 1e-14, S);
 
   const Matrix rest =
-      weights.cwiseProduct(S) + reference::stiffness(S) * R - weights.cwiseProduct(data);
+      weights.cwiseProduct(S) + reference::stiffness(S, precision) * R - weights.cwiseProduct(data);
   EXPECT_LE(rest.norm(), 1e-10 * weights.cwiseProduct(data).norm());
   EXPECT_LT(taken, 500);
 }
 
 TEST(Smooth, TakesOneIterationWhereColumnsAreIndependent) {
   const Matrix data = test::random_matrix(40, 3, 1), weights = Matrix::Ones(40, 3);
-  const Eigen::Vector3d stiffness(1, 10, 100);
-  Matrix S = data;
-
-  EXPECT_EQ(reference::smooth(data, weights, stiffness.asDiagonal().toDenseMatrix(), 8, 1e-6, S),
-            1);
+  const Matrix R = Eigen::Vector3d(1, 10, 100).asDiagonal().toDenseMatrix();
+  Eigen::VectorXd uneven = precisions(40);
+  uneven.segment(10, 5).setConstant(0.01);
+  for (const Eigen::VectorXd& precision : {precisions(40), uneven}) {
+    Matrix S = data;
+    EXPECT_EQ(reference::smooth(data, weights, precision, R, 8, 1e-6, S), 1);
+  }
 }
 
 TEST(Reach, IsTheHarmonicDistanceToSamplesInUse) {
@@ -209,6 +225,36 @@ TEST(MatrixNormal, ScalesWithItsData) {
     EXPECT_LE(test::relative_difference(scaled.deviation / scale, expected.deviation), 1e-9)
         << scale;
   }
+}
+
+TEST(MatrixNormal, KeepsImpactsUnderNoise) {
+  Matrix motion = test::model_motion(400, 21, 1).motion;
+  const std::vector<Index> impacts = {60, 130, 190, 270, 340};
+  const auto change = [&](const Matrix& m, Index k) -> Eigen::RowVectorXd {
+    return m.row(k - 1) - 2 * m.row(k) + m.row(k + 1);
+  };
+  for (const Index k : impacts) {  // velocities change at once
+    const Eigen::RowVectorXd jump = 10 * change(motion, k);
+    for (Index i = k; i < 400; ++i) motion.row(i) += static_cast<double>(i - k) * jump;
+  }
+  const Matrix noisy = motion + 4 * test::random_matrix(400, 21, 2);
+
+  const Matrix cleaned = reference::solve(noisy, MatrixNormal{}).low_rank;
+
+  double kept = 0;
+  for (const Index k : impacts)
+    kept += change(cleaned, k).dot(change(motion, k)) / change(motion, k).squaredNorm() / 5;
+  EXPECT_GE(kept, 0.5);  // 0.63; 0.19 if all accelerations had one scale
+  EXPECT_LE(rms(cleaned - motion), 0.35 * rms(noisy - motion));
+}
+
+TEST(MatrixNormal, IsTheSamePlayedBackward) {
+  const Matrix data = spoilt(walk(150, 9), 4);
+
+  const Matrix forward = reference::solve(data, MatrixNormal{}).low_rank;
+  const Matrix backward = reference::solve(data.colwise().reverse(), MatrixNormal{}).low_rank;
+
+  EXPECT_LE(test::relative_difference(backward.colwise().reverse(), forward), 1e-9);
 }
 
 TEST(MatrixNormal, LeavesColumnsWithoutASampleMissing) {

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -88,20 +87,10 @@ double learned_noise(const MotionEstimate& e) {
 
 // What white noise leaves uncertain of samples in use.
 Matrix noise_variance(const MotionEstimate& e) {
-  const Index frames = e.motion.rows(), columns = e.motion.cols();
   const double noise = noise_of(e);
-  if (noise == 0) return Matrix::Zero(frames, columns);
-  const double learned = learned_noise(e);
-  Matrix along(frames, columns);  // of the directions of Q
-  for (Index k = 0; k < columns; ++k) {
-    const double power = e.spectrum(k), within = learned * noise * kept_power(noise, power);
-    for (Index i = 0; i < frames; ++i) {
-      const auto before = static_cast<double>(i), after = static_cast<double>(frames - 1 - i);
-      along(i, k) = within * (1 + end_excess(before + 0.5, noise, power) +
-                              end_excess(after + 0.5, noise, power));
-    }
-  }
-  return along * e.eigenvectors.cwiseAbs2();
+  if (noise == 0) return Matrix::Zero(e.motion.rows(), e.motion.cols());
+  const Matrix along = variance_left(noise * e.spectrum.cwiseInverse(), e.precision);
+  return learned_noise(e) * noise * along * e.eigenvectors.cwiseAbs2();
 }
 
 // Q and R of the last step.
@@ -298,9 +287,36 @@ void add_doubt(const MotionEstimate& e, Matrix& variance) {
 
 }  // namespace
 
-double end_excess(double distance, double noise, double power) {
-  const double y = distance * std::numbers::sqrt2 * std::sqrt(std::sqrt(power / noise));
-  return y > 40 ? 0 : std::exp(-y) * (2 + std::cos(y) - std::sin(y));
+Matrix variance_left(const Eigen::VectorXd& ratios, const Eigen::VectorXd& precision) {
+  const Index frames = precision.size() + 2, columns = ratios.size();
+  const Row ratio = ratios.transpose();
+  const auto at = [&](Index k) { return k >= 0 && k < precision.size() ? precision(k) : 0.; };
+  // L diag(pivot) L', L with the lower bands `first` and `second`, from the first row on.
+  Matrix inverse_pivot(frames, columns), first = Matrix::Zero(frames + 1, columns);
+  Matrix second = Matrix::Zero(frames + 2, columns);
+  for (Index i = 0; i < frames; ++i) {
+    Row pivot = 1 + ratio * (at(i) + 4 * at(i - 1) + at(i - 2));
+    Row next = -2 * (at(i - 1) + at(i - 2)) * ratio;
+    if (i >= 2) {
+      second.row(i) = at(i - 2) * ratio * inverse_pivot.row(i - 2).array();
+      pivot -= at(i - 2) * ratio * second.row(i).array();
+      next -= at(i - 2) * ratio * first.row(i - 1).array();
+    }
+    if (i >= 1) first.row(i) = next * inverse_pivot.row(i - 1).array();
+    inverse_pivot.row(i) = (pivot - next * first.row(i).array()).inverse();
+  }
+  // The bands of the inverse, from its last row on (Takahashi 1973).
+  Matrix left(frames, columns);
+  Row own = Row::Zero(columns), beside = own, far = own;  // (i, i), (i, i + 1), (i + 1, i + 1)
+  for (Index i = frames - 1; i >= 0; --i) {
+    const auto l1 = first.row(i + 1).array(), l2 = second.row(i + 2).array();
+    const Row one = -l1 * own - l2 * beside, two = -l1 * beside - l2 * far;
+    far = own;
+    own = inverse_pivot.row(i).array() - l1 * one - l2 * two;
+    beside = one;
+    left.row(i) = own;
+  }
+  return left;
 }
 
 Eigen::VectorXd conditional_variance(const Matrix& Q, const Matrix& R, const ColumnMask& used) {

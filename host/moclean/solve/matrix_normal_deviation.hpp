@@ -9,15 +9,16 @@ namespace moclean {
 /// What MatrixNormal has found of one window. Matrices are [frames x columns], at least three
 /// frames; a joint is a run of `joint_columns` neighbouring columns, the last may be shorter.
 struct MotionEstimate {
-  Matrix motion;             ///< S
-  Mask used;                 ///< samples that S was fitted to
-  Matrix rejected;           ///< D - S of observed samples that S was not fitted to, else 0
-  Matrix drawn_variance;     ///< of what else is known of missing samples; infinite: nothing
-  Matrix eigenvectors;       ///< of Q, in rows [columns x columns]
-  Eigen::VectorXd spectrum;  ///< eigenvalues of Q, its ridge included, above 0
-  double noise = 0;          ///< sigma of the samples
-  double size = 0;           ///< of a body: typical distances, above 0
-  double floor = 0;          ///< sigma that is none: samples in use come out as they are; above 0
+  Matrix motion;              ///< S
+  Mask used;                  ///< samples that S was fitted to
+  Matrix rejected;            ///< D - S of observed samples that S was not fitted to, else 0
+  Matrix drawn_variance;      ///< of what else is known of missing samples; infinite: nothing
+  Matrix eigenvectors;        ///< of Q, in rows [columns x columns]
+  Eigen::VectorXd spectrum;   ///< eigenvalues of Q, its ridge included, above 0
+  Eigen::VectorXd precision;  ///< of the accelerations, over Q's [frames - 2]
+  double noise = 0;           ///< sigma of the samples
+  double size = 0;            ///< of a body: typical distances, above 0
+  double floor = 0;           ///< sigma that is none: samples in use come out as they are; above 0
   Index joint_columns = 3;
   bool has_prior = false;  ///< Q was drawn to what is known of such motion beforehand
 };
@@ -33,11 +34,10 @@ struct MotionEstimate {
 /// missing samples otherwise is joined by precision.
 Matrix marginal_deviation(const MotionEstimate& estimate);
 
-/// Share by which the posterior variance is larger `distance` frames (to the middle of the sample)
-/// from the end of a window than within it, under white noise of variance `noise` and independent
-/// accelerations of variance `power`: exp(-y) (2 + cos y - sin y), y = distance sqrt 2
-/// (power / noise)^1/4. 3 at the end itself.
-double end_excess(double distance, double noise, double power);
+/// Diagonals of (1 + ratio Delta' P Delta)^-1 for every ratio of the variance of white noise to
+/// that of accelerations, [frames x ratios]: the share of the noise that smoothing leaves. P is the
+/// diagonal `precision` [frames - 2].
+Matrix variance_left(const Eigen::VectorXd& ratios, const Eigen::VectorXd& precision);
 
 /// Variance of each column's acceleration given those in use, [columns], for columns not in use;
 /// else 0. `Q` is the covariance of accelerations, `R` its inverse.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <iterator>
 #include <limits>
 #include <utility>
@@ -12,6 +11,7 @@
 
 #include "moclean/core/linear_fill.hpp"
 #include "moclean/core/order_statistics.hpp"
+#include "moclean/solve/acceleration_scale.hpp"
 #include "moclean/solve/matrix_normal_deviation.hpp"
 #include "moclean/solve/matrix_normal_prior.hpp"
 #include "moclean/solve/matrix_normal_statistics.hpp"
@@ -26,6 +26,7 @@ constexpr double noise_floor_share = 1.25e-5;  // least sigma of the hard steps,
 constexpr double soft_floor_share = 0.1;       // of the soft ones, of that
 constexpr double dense_noise = 10. / 6;        // sigma^2 over mean e from which smoothing is undone
 constexpr double most_stiffness = 1e3;
+constexpr double in_use = 0.3;  // least weight of samples that accelerations are learned from
 constexpr double clip_deviations = 5, near_deviations = 3;
 // Of drawn samples: the errors in a gap are one slow curve, and in a short one S knows better.
 constexpr double drawn_weight_per_lag = 0.03, most_drawn_weight = 0.3;
@@ -46,7 +47,8 @@ double open_variance(double h) { return std::max(h / 6, h * h * h / 24); }
 }  // namespace
 
 double kept_power(double noise, double power) {
-  return (1. / std::sqrt(std::complex(1., 4 * std::sqrt(noise / power)))).real();
+  const double q = std::sqrt(1 + 16 * noise / power);
+  return std::sqrt((1 + 1 / q) / (2 * q));
 }
 
 MatrixNormalWindow::MatrixNormalWindow(const ConstMatrixRef& data, const MatrixNormal& method,
@@ -62,6 +64,8 @@ MatrixNormalWindow::MatrixNormalWindow(const ConstMatrixRef& data, const MatrixN
   least_noise_ = std::max(rounding_deviation(data), known_->noise);
   sigma_ = std::max({dense_noise_level(data), least_noise_, soft_floor_share * noise_floor_});
   weights_ = observed_;
+  precision_ = Eigen::VectorXd::Ones(rows);
+  precision_.tail(std::min<Index>(rows, 2)).setZero();
   find_drawn();
   target_ = data_;
   if (method.joint_columns == 3 && columns() % 3 == 0 && !trivial())
@@ -119,7 +123,10 @@ Matrix MatrixNormalWindow::accelerations(const ConstMatrixRef& motion) const {
   Matrix a = Matrix::Zero(rows(), columns());
   a.topRows(count) =
       motion.topRows(count) - 2 * motion.middleRows(1, count) + motion.middleRows(2, count);
-  if (hard()) return a;
+  if (hard()) {
+    a.topRows(count) = acceleration_weights(precision_.head(count)).asDiagonal() * a.topRows(count);
+    return a;
+  }
   std::vector<double> magnitudes(static_cast<std::size_t>(count));
   Eigen::Map<Eigen::ArrayXd> sizes(magnitudes.data(), count);
   for (Index j = 0; j < columns(); ++j) {
@@ -187,9 +194,12 @@ Matrix MatrixNormalWindow::energies(const ConstMatrixRef& motion) const {
   return energy;
 }
 
-void MatrixNormalWindow::weigh(const ConstMatrixRef& motion,
-                               const Eigen::VectorXd& inverse_diagonal) {
-  predictive_ = inverse_diagonal.cwiseInverse();
+void MatrixNormalWindow::weigh(const ConstMatrixRef& motion, const ConstMatrixRef& R) {
+  predictive_ = R.diagonal().cwiseInverse();
+  if (hard())
+    precision_.head(frames_ - 2) =
+        acceleration_precision(motion.topRows(frames_), R, spectrum_, square(sigma_) / share_kept(),
+                               weights_.array() > in_use, precision_.head(frames_ - 2));
   const Matrix energy = energies(motion);
   solve_weights_ = Matrix::Zero(rows(), columns());
   target_changed_ = step_ == 0;
@@ -345,6 +355,7 @@ Matrix MatrixNormalWindow::deviation(const ConstMatrixRef& motion,
                                       .drawn_variance = std::move(drawn),
                                       .eigenvectors = eigenvectors,
                                       .spectrum = spectrum_,
+                                      .precision = precision_.head(frames_ - 2),
                                       .noise = sigma_,
                                       .size = noise_floor_ / noise_floor_share,
                                       .floor = noise_floor_,

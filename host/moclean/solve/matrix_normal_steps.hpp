@@ -14,7 +14,8 @@ namespace moclean {
 /// noise. The same bits on every backend. A step is
 ///   A = accelerations(S), times growth() if there is one;   add_prior(A'A) = Z' diag(e) Z
 ///   R = Z' diag(inverse_spectrum(e)) Z, about Q^-1
-///   weigh(S, diag R);   S = argmin sum weights() (target() - S)^2 + tr(Delta S R (Delta S)')
+///   weigh(S, R)
+///   S = argmin sum weights() (target() - S)^2 + tr(P Delta S R (Delta S)'), P = diag precision()
 ///   estimate_noise(S)
 /// and the results come last. Matrices are [rows x columns]; a window shorter than it is wide is
 /// extended by frames without samples until rows = columns, which leaves the minimiser as it is.
@@ -44,7 +45,7 @@ class MatrixNormalWindow {
   FirstGuess first_guess() const;
 
   /// Delta S, the last two rows zero. In soft steps every column is clipped at five robust
-  /// deviations.
+  /// deviations; in hard ones rows have acceleration_weights() (solve/acceleration_scale.hpp).
   Matrix accelerations(const ConstMatrixRef& motion) const;
 
   /// Weights per eigenvector of the Q of the step before: A is multiplied by Z' diag(growth) Z to
@@ -58,8 +59,11 @@ class MatrixNormalWindow {
   /// 1 / (e + ridge), given the eigenvalues of that.
   Eigen::VectorXd inverse_spectrum(const Eigen::VectorXd& eigenvalues);
 
-  /// Weights and targets from the residuals, given diag R.
-  void weigh(const ConstMatrixRef& motion, const Eigen::VectorXd& inverse_diagonal);
+  /// Precisions from the accelerations, weights and targets from the residuals.
+  void weigh(const ConstMatrixRef& motion, const ConstMatrixRef& R);
+
+  /// Of the rows of Delta S; 0 of the last two, which are none.
+  const Eigen::VectorXd& precision() const { return precision_; }
 
   const Matrix& weights() const { return solve_weights_; }  ///< W / v
   const Matrix& target() const { return target_; }          ///< D; in gaps, where lengths say
@@ -122,6 +126,7 @@ class MatrixNormalWindow {
   int step_ = 0;
   Matrix weights_, solve_weights_, target_;  // W [frames x columns], W / v, what S is drawn to
   bool target_changed_ = true;
+  Eigen::VectorXd precision_;              // [rows]
   Eigen::VectorXd spectrum_, predictive_;  // e of this step's Q with its ridge; 1 / R_jj
 };
 
@@ -131,7 +136,8 @@ inline constexpr double least_preconditioner_weight = 1e-9;
 
 /// Share of the acceleration power in a direction of variance `power` that smoothing keeps under
 /// white noise of variance `noise`: the mean over frequencies w of
-/// 1 / (1 + noise / power (2 - 2 cos w)^2), which is Re (1 + 4 i sqrt(noise / power))^-1/2.
+/// 1 / (1 + noise / power (2 - 2 cos w)^2), which is Re (1 + 4 i sqrt(noise / power))^-1/2, that is
+/// sqrt((1 + 1 / q) / 2 q) with q = sqrt(1 + 16 noise / power).
 double kept_power(double noise, double power);
 
 /// Moves the joints that are free (`free` is [frames x joints]) along their exact links until the

@@ -35,6 +35,7 @@ ConjugateGradientsMemory::ConjugateGradientsMemory(const Device& device, const B
       inverse_pivot(device, batch.stacked_size()),
       first_band(device, batch.stacked_size()),
       R(device, batch.square_size()),
+      precisions(device, batch.stacked_size() / static_cast<std::size_t>(batch.pitch())),
       stiffness(device, batch.vector_size()),
       least(device, static_cast<std::size_t>(batch.segments())),
       rz(device, partial_sums(device, batch)),
@@ -87,16 +88,16 @@ void ConjugateGradients::operator()(const Batch& batch, Memory& m, Products& pro
     else
       search_in_tiles(batch, m, z, until, begins);
   };
-  factor_(columns, batch.device_segments(), batch.device_active(), m.W, m.stiffness, m.least,
-          m.inverse_pivot, m.first_band);
+  factor_(columns, batch.device_segments(), batch.device_active(), m.W, m.precisions, m.stiffness,
+          m.least, m.inverse_pivot, m.first_band);
   search(m.S, -1, true);
-  start_(columns, batch.device_segments(), batch.device_active(), m.D, m.W, m.stiffness,
-         m.inverse_pivot, m.first_band, m.product, m.r, m.z, m.rz, m.bz);
+  start_(columns, batch.device_segments(), batch.device_active(), m.D, m.W, m.precisions,
+         m.stiffness, m.inverse_pivot, m.first_band, m.product, m.r, m.z, m.rz, m.bz);
   for (int i = 0; i < most_iterations; ++i) {
     search(m.z, tolerance, i == 0);
-    update_(columns, batch.device_segments(), batch.device_active(), m.stiffness, m.inverse_pivot,
-            m.first_band, m.p, m.product, m.partial_pq, m.rz, m.bz, cl_double{tolerance}, m.S, m.r,
-            m.z, m.rz_before);
+    update_(columns, batch.device_segments(), batch.device_active(), m.precisions, m.stiffness,
+            m.inverse_pivot, m.first_band, m.p, m.product, m.partial_pq, m.rz, m.bz,
+            cl_double{tolerance}, m.S, m.r, m.z, m.rz_before);
     std::swap(m.rz, m.rz_before);
     std::swap(m.p, m.p_before);
   }
@@ -107,9 +108,9 @@ void ConjugateGradients::search_in_tiles(const Batch& batch, Memory& m, const Bu
   const auto chunk = static_cast<std::size_t>(chunk_rows * batch.pitch());
   grow(curvatures_, device_, batch.block_count() * chunk);
   tiles_->direction(per_block(batch), batch.device_segments(), batch.device_blocks(),
-                    batch.active_blocks(), m.W, m.R, z, m.p_before, m.rz, m.rz_before, m.bz,
-                    cl_double{tolerance}, cl_int{begins}, curvatures_, m.p, m.product, m.partial_pq,
-                    m.iterations);
+                    batch.active_blocks(), m.W, m.R, m.precisions, z, m.p_before, m.rz, m.rz_before,
+                    m.bz, cl_double{tolerance}, cl_int{begins}, curvatures_, m.p, m.product,
+                    m.partial_pq, m.iterations);
 }
 
 // The product is also that of segments which are left as they are; nothing reads theirs.
@@ -119,8 +120,8 @@ void ConjugateGradients::search_in_groups(const Batch& batch, Memory& m, Product
   const auto width = static_cast<std::size_t>(work_group_);
   const Grid grid{.x = width * static_cast<std::size_t>(batch.active_blocks()), .group_x = width};
   groups_->differences(grid, batch.device_segments(), batch.device_blocks(), batch.active_blocks(),
-                       z, m.p_before, m.rz, m.rz_before, m.bz, cl_double{tolerance}, cl_int{begins},
-                       m.p, curvatures_, m.iterations);
+                       z, m.p_before, m.precisions, m.rz, m.rz_before, m.bz, cl_double{tolerance},
+                       cl_int{begins}, m.p, curvatures_, m.iterations);
   products.apply(batch, curvatures_, m.R, m.product);
   groups_->complete(grid, batch.device_segments(), batch.device_blocks(), batch.active_blocks(),
                     m.W, m.p, m.product, m.partial_pq);

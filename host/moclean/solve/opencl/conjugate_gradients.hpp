@@ -7,19 +7,20 @@
 namespace moclean::opencl {
 
 /// What the conjugate gradients of a batch work on, in the notation of
-/// kernels/conjugate_gradients.cl. Stacked matrices are [rows x columns], R is square, stiffness is
-/// the diagonal of R, least what keeps the preconditioner of a segment definite.
+/// kernels/conjugate_gradients.cl. Stacked matrices are [rows x columns], R is square, precisions
+/// are one per row of all segments, 0 of the last two of each, stiffness is the diagonal of R,
+/// least what keeps the preconditioner of a segment definite.
 struct ConjugateGradientsMemory {
   ConjugateGradientsMemory(const Device& device, const Batch& batch);
 
   Buffer<double> D, W, S, r, z, p, p_before, product, inverse_pivot, first_band;
-  Buffer<double> R, stiffness, least;
+  Buffer<double> R, precisions, stiffness, least;
   Buffer<double> rz, rz_before, bz, partial_pq;
   Buffer<std::int32_t> iterations;  ///< of each segment, counted on
 };
 
-/// Preconditioned conjugate gradients for S = argmin sum W (D - S)^2 + tr(Delta S R (Delta S)') of
-/// the segments of a batch, none of them wide. A search direction and its product are found by
+/// Preconditioned conjugate gradients for S = argmin sum W (D - S)^2 + tr(P Delta S R (Delta S)')
+/// of the segments of a batch, none of them wide. A search direction and its product are found by
 /// register tiles, a work-item per block of rows (kernels/search_direction.cl), or with
 /// ProductPath::group by work-groups (kernels/search_direction_group.cl).
 class ConjugateGradients {

@@ -65,6 +65,15 @@ struct MatrixNormalSolver::Run {
     target.write(values);
   }
 
+  // Writes the precisions of the accelerations of every active window.
+  void set_precisions() {
+    std::vector<double> values(static_cast<std::size_t>(host.rows()), 0);
+    for (const std::int32_t b : batch.active())
+      Eigen::Map<Eigen::VectorXd>(values.data() + batch.segment(b).first_row, window(b).rows()) =
+          window(b).precision();
+    gradients.precisions.write(values);
+  }
+
   // Writes the diagonal of R, and what keeps the preconditioner definite.
   template <class ValueOf>
   void set_stiffness(const ValueOf& value_of) {
@@ -110,7 +119,8 @@ std::uint64_t MatrixNormalSolver::memory_of(Index rows, Index columns, const Mat
   const Index pitch = padded(columns), extended = extended_rows(rows, columns);
   const Index blocks = (extended + block_rows - 1) / block_rows;
   const Index doubles = stacked_matrices * extended * pitch + square_matrices * columns * pitch +
-                        (vectors + 3) * pitch + blocks + gradients_.scratch_of(extended, columns);
+                        (vectors + 3) * pitch + extended + blocks +
+                        gradients_.scratch_of(extended, columns);
   return static_cast<std::uint64_t>(doubles) * sizeof(double) + eigen_.memory_of(columns) +
          sizeof(SegmentRecord) + 4 * sizeof(double) +
          static_cast<std::uint64_t>(blocks) * sizeof(BlockRecord);
@@ -162,7 +172,7 @@ void MatrixNormalSolver::learn(Run& run) {
   products_.reconstruct(run.batch, run.Z, run.f, run.terms, run.gradients.R);
 }
 
-// S = argmin sum W (D - S)^2 + tr(Delta S R (Delta S)') from S on, by conjugate gradients.
+// S = argmin sum W (D - S)^2 + tr(P Delta S R (Delta S)') from S on, by conjugate gradients.
 void MatrixNormalSolver::smooth(Run& run, const MatrixNormal& method) {
   gradients_(run.batch, run.gradients, products_, method.solve_iterations, method.solve_tolerance);
 }
@@ -181,6 +191,7 @@ void MatrixNormalSolver::first_smoothing(Run& run, const MatrixNormal& method) {
       run.gradients.S);
   run.gradients.D.write(run.host.storage());
   run.gradients.R.write(R);
+  run.set_precisions();
   run.set_stiffness([&](std::int32_t b) { return diagonals[static_cast<std::size_t>(b)]; });
   run.upload(
       [&](std::int32_t b) {
@@ -199,9 +210,10 @@ void MatrixNormalSolver::weigh(Run& run) {
   for (const std::int32_t b : run.batch.active()) {
     Eigen::VectorXd& diagonal = diagonals[static_cast<std::size_t>(b)];
     diagonal = run.diagonal_of(R, b);
-    run.window(b).weigh(run.host.segment(b), diagonal);
+    run.window(b).weigh(run.host.segment(b), run.square_of(R, b));
   }
   run.set_stiffness([&](std::int32_t b) { return diagonals[static_cast<std::size_t>(b)]; });
+  run.set_precisions();
   run.upload([&](std::int32_t b) -> const Matrix& { return run.window(b).weights(); },
              run.gradients.W);
   const auto changed = [&](std::int32_t b) { return run.window(b).target_changed(); };

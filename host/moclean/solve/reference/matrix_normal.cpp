@@ -1,5 +1,6 @@
-// Notation: D data, S motion, W weights over variances, R about Q^-1, r residual, z = M^-1 r
-// preconditioned residual, p direction; see solve/matrix_normal.hpp and matrix_normal_steps.hpp.
+// Notation: D data, S motion, W weights over variances, P precisions, R about Q^-1, r residual, z =
+// M^-1 r preconditioned residual, p direction; see solve/matrix_normal.hpp and
+// matrix_normal_steps.hpp.
 #include "moclean/solve/reference/matrix_normal.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -10,30 +11,31 @@
 namespace moclean::reference {
 namespace {
 
-/// M = L diag(pivot) L' with a unit L of two lower bands; per column diag(W_j) + R_jj Delta'Delta.
+/// M = L diag(pivot) L' with a unit L of two lower bands; per column diag(W_j) + R_jj Delta'P
+/// Delta.
 class Preconditioner {
  public:
-  Preconditioner(const Matrix& weights, const Eigen::RowVectorXd& stiffness)
+  Preconditioner(const Matrix& weights, const Eigen::VectorXd& precision,
+                 const Eigen::RowVectorXd& stiffness)
       : inverse_pivot_(weights.rows(), weights.cols()),
         first_(Matrix::Zero(weights.rows(), weights.cols())),
         second_(first_) {
     const Index rows = weights.rows();
     const double least = least_preconditioner_weight * stiffness.mean();
     for (Index i = 0; i < rows; ++i) {
-      const auto coupled = [&](Index k) { return k >= 0 && k + 2 < rows ? 1. : 0.; };
-      const double diagonal = coupled(i) + 4 * coupled(i - 1) + coupled(i - 2);
-      const double next = -2 * (coupled(i - 1) + coupled(i - 2));
+      const auto p = [&](Index k) { return k >= 0 ? precision(k) : 0.; };
+      const double diagonal = p(i) + 4 * p(i - 1) + p(i - 2);
+      const double next = -2 * (p(i - 1) + p(i - 2));
       Eigen::RowVectorXd pivot = weights.row(i) + diagonal * stiffness;
       pivot.array() += least;
-      if (i >= 2 && coupled(i - 2) != 0)
-        second_.row(i) = stiffness.cwiseProduct(inverse_pivot_.row(i - 2));
+      if (i >= 2) second_.row(i) = p(i - 2) * stiffness.cwiseProduct(inverse_pivot_.row(i - 2));
       if (i >= 1) {
         Eigen::RowVectorXd l = next * stiffness;
-        if (i >= 2) l -= coupled(i - 2) * stiffness.cwiseProduct(first_.row(i - 1));
+        if (i >= 2) l -= p(i - 2) * stiffness.cwiseProduct(first_.row(i - 1));
         first_.row(i) = l.cwiseProduct(inverse_pivot_.row(i - 1));
         pivot -= l.cwiseProduct(first_.row(i));
       }
-      if (i >= 2) pivot -= coupled(i - 2) * stiffness.cwiseProduct(second_.row(i));
+      if (i >= 2) pivot -= p(i - 2) * stiffness.cwiseProduct(second_.row(i));
       inverse_pivot_.row(i) = pivot.cwiseInverse();
     }
   }
@@ -72,22 +74,23 @@ Spectrum spectrum_of(const Matrix& square) {
 
 }  // namespace
 
-Matrix stiffness(const Matrix& x) {
+Matrix stiffness(const Matrix& x, const Eigen::VectorXd& precision) {
   Matrix result = Matrix::Zero(x.rows(), x.cols());
   const Index count = x.rows() - 2;
   if (count < 1) return result;
-  const Matrix a = x.topRows(count) - 2 * x.middleRows(1, count) + x.bottomRows(count);
+  const Matrix a = precision.head(count).asDiagonal() *
+                   (x.topRows(count) - 2 * x.middleRows(1, count) + x.bottomRows(count));
   result.topRows(count) += a;
   result.middleRows(1, count) -= 2 * a;
   result.bottomRows(count) += a;
   return result;
 }
 
-int smooth(const Matrix& data, const Matrix& weights, const Matrix& R, int iterations,
-           double tolerance, Matrix& S) {
-  const Preconditioner M(weights, R.diagonal().transpose());
+int smooth(const Matrix& data, const Matrix& weights, const Eigen::VectorXd& precision,
+           const Matrix& R, int iterations, double tolerance, Matrix& S) {
+  const Preconditioner M(weights, precision, R.diagonal().transpose());
   const auto product = [&](const Matrix& x) -> Matrix {
-    return weights.cwiseProduct(x) + stiffness(x) * R;
+    return weights.cwiseProduct(x) + stiffness(x, precision) * R;
   };
   const Matrix b = weights.cwiseProduct(data);
   const double enough = tolerance * tolerance * b.cwiseProduct(M.solve(b)).sum();
@@ -121,7 +124,7 @@ MatrixNormalSolution solve(const ConstMatrixRef& data, const MatrixNormal& metho
     const Matrix ones = Matrix::Ones(window.rows(), window.columns());
     const auto guess = window.first_guess();
     S = guess.motion;
-    smooth(guess.motion, ones, guess.stiffness.asDiagonal().toDenseMatrix(),
+    smooth(guess.motion, ones, window.precision(), guess.stiffness.asDiagonal().toDenseMatrix(),
            method.solve_iterations, method.solve_tolerance, S);
     for (int step = 0; step < window.steps(); ++step) {
       if (stop.stop_requested()) throw Cancelled();
@@ -131,9 +134,9 @@ MatrixNormalSolution solve(const ConstMatrixRef& data, const MatrixNormal& metho
       window.add_prior(square);
       Q = spectrum_of(square);
       const Matrix R = Q.weighted(window.inverse_spectrum(Q.values));
-      window.weigh(S, R.diagonal());
-      solution.outcome.iterations += smooth(window.target(), window.weights(), R,
-                                            method.solve_iterations, method.solve_tolerance, S);
+      window.weigh(S, R);
+      solution.outcome.iterations += smooth(window.target(), window.weights(), window.precision(),
+                                            R, method.solve_iterations, method.solve_tolerance, S);
       window.estimate_noise(S);
     }
   }

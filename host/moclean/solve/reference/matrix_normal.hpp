@@ -8,17 +8,19 @@
 
 namespace moclean::reference {
 
-/// Delta'Delta X, Delta the second difference over the rows; 0 for fewer than three rows.
-Matrix stiffness(const Matrix& x);
+/// Delta' diag(precision) Delta X, Delta the second difference over the rows, of which the last two
+/// are none: precision [rows] is 0 there.
+Matrix stiffness(const Matrix& x, const Eigen::VectorXd& precision);
 
-/// Minimises sum W_ij (D_ij - S_ij)^2 + tr(Delta S R (Delta S)') over S, that is solves
-///   W o S + Delta'Delta S R = W o D
+/// Minimises sum W_ij (D_ij - S_ij)^2 + tr(P Delta S R (Delta S)') over S, that is solves
+///   W o S + Delta'P Delta S R = W o D
 /// by preconditioned conjugate gradients from S on, R symmetric positive definite [columns x
-/// columns]. The preconditioner is the same system with the diagonal of R in its place, one
-/// pentadiagonal matrix per column. Stops after `iterations`, or when r'M^-1 r is `tolerance`^2 of
-/// what it is for S = 0. Returns the iterations taken.
-int smooth(const Matrix& data, const Matrix& weights, const Matrix& R, int iterations,
-           double tolerance, Matrix& S);
+/// columns], P the diagonal `precision` as of stiffness(). The preconditioner is the same system
+/// with the diagonal of R in its place, one pentadiagonal matrix per column. Stops after
+/// `iterations`, or when r'M^-1 r is `tolerance`^2 of what it is for S = 0. Returns the iterations
+/// taken.
+int smooth(const Matrix& data, const Matrix& weights, const Eigen::VectorXd& precision,
+           const Matrix& R, int iterations, double tolerance, Matrix& S);
 
 /// One window cleaned.
 struct MatrixNormalSolution {
