@@ -23,8 +23,9 @@ namespace {
 constexpr double soft_ridge = 2e-2, hard_ridge = 1e-3;  // share of the mean eigenvalue of Q
 constexpr double least_prior = 10, noise_prior = 50;    // frames that the prior of Q counts for
 constexpr double noise_floor_share = 1.25e-5;  // least sigma of the hard steps, of the size
-constexpr double soft_floor_share = 0.1;       // of the soft ones, of that
-constexpr double dense_noise = 10. / 6;        // sigma^2 over mean e from which smoothing is undone
+constexpr double noise_to_scale = 10;     // least sigma to tell scales of accelerations, of that
+constexpr double soft_floor_share = 0.1;  // of the soft ones, of that
+constexpr double dense_noise = 10. / 6;   // sigma^2 over mean e from which smoothing is undone
 constexpr double most_stiffness = 1e3;
 constexpr double in_use = 0.3;  // least weight of samples that accelerations are learned from
 constexpr double clip_deviations = 5, near_deviations = 3;
@@ -196,10 +197,12 @@ Matrix MatrixNormalWindow::energies(const ConstMatrixRef& motion) const {
 
 void MatrixNormalWindow::weigh(const ConstMatrixRef& motion, const ConstMatrixRef& R) {
   predictive_ = R.diagonal().cwiseInverse();
-  if (hard())
+  if (hard() && sigma_ > noise_to_scale * noise_floor_)
     precision_.head(frames_ - 2) =
         acceleration_precision(motion.topRows(frames_), R, spectrum_, square(sigma_) / share_kept(),
                                weights_.array() > in_use, precision_.head(frames_ - 2));
+  else
+    precision_.head(frames_ - 2).setOnes();
   const Matrix energy = energies(motion);
   solve_weights_ = Matrix::Zero(rows(), columns());
   target_changed_ = step_ == 0;
