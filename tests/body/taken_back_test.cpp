@@ -17,12 +17,12 @@ void displace(Index joint, Index first, Matrix& samples) {
       Eigen::RowVector3d(0.7, -0.5, 0.6);
 }
 
-RigidFlags flags_in_noise(Matrix samples) {
+RigidFlags flags_in_noise(Matrix samples, bool white = true) {
   Random random(11);
   for (double& x : samples.reshaped()) x += noise * random.normal();
   const BodyTake take = body_take(samples, 120);
   const double smallest = noise_of_distance * noise;
-  return judge(take, learn_rigid_body(take, smallest), body_size(take), smallest);
+  return judge(take, learn_rigid_body(take, smallest), body_size(take), smallest, white);
 }
 
 TEST(TakeBackTurning, KeepsAThumbThatFlipsThoughNoiseHidesItsBone) {
@@ -32,6 +32,14 @@ TEST(TakeBackTurning, KeepsAThumbThatFlipsThoughNoiseHidesItsBone) {
 
   EXPECT_FALSE(flags.bad.any());
   EXPECT_TRUE(flags.vouched.col(11).segment(205, 30).all());
+}
+
+TEST(TakeBackTurning, KeepsNothingWhereNeighbouringFramesShareTheirNoise) {
+  Matrix samples = test::limbs_with_hand(400);
+  test::flip(test::thumb, 200, 240, samples);
+  const RigidFlags flags = flags_in_noise(samples, false);
+
+  EXPECT_GE(flags.bad.col(test::thumb).segment(200, 40).count(), 36);
 }
 
 TEST(TakeBackTurning, KeepsNoRunThatIsALengthAwayByChance) {

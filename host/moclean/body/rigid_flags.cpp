@@ -170,7 +170,8 @@ void vouch(const RigidBody& body, const EdgeDistances& d, const EdgeLimits& limi
 
 }  // namespace
 
-RigidFlags judge(const BodyTake& take, const RigidBody& body, double size, double smallest) {
+RigidFlags judge(const BodyTake& take, const RigidBody& body, double size, double smallest,
+                 bool noise_is_white) {
   const Mask none = Mask::Constant(take.frames(), take.joints(), false);
   RigidFlags flags{none, none, none, {}};
   if (!body.is_rigid()) return flags;
@@ -190,7 +191,7 @@ RigidFlags judge(const BodyTake& take, const RigidBody& body, double size, doubl
     blame_all(body, slow, slow_limits, flags.bad);
   }
   close_holes(take, flags.bad);
-  flags.bones = noisy_bones(body, d, limits, flags.bad);
+  if (noise_is_white) flags.bones = noisy_bones(body, d, limits, flags.bad);
   Mask turned = none;
   if (flags.bones.empty()) turned = take_back_turning(take, body, d, limits, flags.bad);
   take_back_gradual(take, body, d, limits, smallest / noise_of_distance, flags.bad);

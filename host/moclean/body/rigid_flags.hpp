@@ -22,7 +22,9 @@ struct RigidFlags {
 /// errors, lasting ones are looked for in running medians of the distances, too.
 ///
 /// Flags of joints that turned, or moved gradually, are taken back (taken_back.hpp). `size` is
-/// body_size(take).
-RigidFlags judge(const BodyTake& take, const RigidBody& body, double size, double smallest);
+/// body_size(take). `noise_is_white`: otherwise neighbouring frames share it, an average over a run
+/// has about as much as a frame, and there are no NoisyBones.
+RigidFlags judge(const BodyTake& take, const RigidBody& body, double size, double smallest,
+                 bool noise_is_white = true);
 
 }  // namespace moclean

@@ -60,7 +60,7 @@ BodyFindings look_at(const BodyTake& take, const Matrix& samples) {
   for (const RigidEdge& edge : body.edges)
     if (edge.hard || edge.exact)
       known.links.push_back({edge.first, edge.second, edge.length, edge.hard, edge.exact});
-  RigidFlags flags = judge(take, body, known.size, found.smallest);
+  RigidFlags flags = judge(take, body, known.size, found.smallest, known.noise <= 0);
   found.bad = std::move(flags.bad);
   known.vouched = std::move(flags.vouched);
   found.bones = std::move(flags.bones);
