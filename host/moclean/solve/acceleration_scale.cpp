@@ -7,8 +7,8 @@
 namespace moclean {
 namespace {
 
-constexpr double least_prior = 3, prior_per_lost = 20;  // f, and per sample that is not used
-constexpr double weight_power = 0.25;                   // of the precisions; most likely 0.5
+constexpr double prior_numbers = 3, prior_per_lost = 20;  // f, and per sample that is not used
+constexpr double weight_power = 0.25;                     // of the precisions; most likely 0.5
 
 }  // namespace
 
@@ -23,7 +23,7 @@ Eigen::VectorXd acceleration_precision(const ConstMatrixRef& motion, const Const
   Eigen::VectorXd precision(count);
   for (Index k = 0; k < count; ++k) {
     const auto fewest = static_cast<double>(used.middleRows(k, 3).rowwise().count().minCoeff());
-    const double prior = least_prior + prior_per_lost * (columns - fewest);
+    const double prior = prior_numbers + prior_per_lost * (columns - fewest);
     double told = 0;
     for (const double power : spectrum) told += kept_power(noise, power / before(k));
     const double energy = product.row(k).dot(a.row(k));

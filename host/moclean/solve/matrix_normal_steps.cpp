@@ -27,7 +27,7 @@ constexpr double noise_to_scale = 10;     // least sigma to tell scales of accel
 constexpr double soft_floor_share = 0.1;  // of the soft ones, of that
 constexpr double dense_noise = 10. / 6;   // sigma^2 over mean e from which smoothing is undone
 constexpr double most_stiffness = 1e3;
-constexpr double in_use = 0.3;  // least weight of samples that accelerations are learned from
+constexpr double learned_weight = 0.3;  // least weight of samples that scales are learned from
 constexpr double clip_deviations = 5, near_deviations = 3;
 // Of drawn samples: the errors in a gap are one slow curve, and in a short one S knows better.
 constexpr double drawn_weight_per_lag = 0.03, most_drawn_weight = 0.3;
@@ -200,7 +200,7 @@ void MatrixNormalWindow::weigh(const ConstMatrixRef& motion, const ConstMatrixRe
   if (hard() && sigma_ > noise_to_scale * noise_floor_)
     precision_.head(frames_ - 2) =
         acceleration_precision(motion.topRows(frames_), R, spectrum_, square(sigma_) / share_kept(),
-                               weights_.array() > in_use, precision_.head(frames_ - 2));
+                               weights_.array() > learned_weight, precision_.head(frames_ - 2));
   else
     precision_.head(frames_ - 2).setOnes();
   const Matrix energy = energies(motion);
