@@ -25,6 +25,7 @@ constexpr std::size_t most_trials = 12, fewest_trials = 3;
 constexpr Index probes_per_trial = 5;
 constexpr std::size_t always_regressed = 100, frames_per_regression = 10;
 constexpr double lag_of_gap = 0.4;
+constexpr double credible = 1e-6;  // least variance of a fill, over that of a steady distance
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
 // Bridges gaps of fewer than `longest` frames by straight lines, so that what is missing for a
@@ -191,6 +192,13 @@ Index shortest_regressed(const std::vector<Gap>& gaps, Index frames) {
   return lengths[most] + 1;
 }
 
+// Where a joint stood still in the trials, or was filled by another program, nothing is missed and
+// nothing wrong: that is no promise for the gap.
+void make_credible(double least, FillRule& rule) {
+  rule.usual_miss = std::max(rule.usual_miss, least);
+  for (double& variance : rule.variances) variance = std::max(variance, least);
+}
+
 }  // namespace
 
 Fills fill_gaps(BodyTake take, double floor, Index least) {
@@ -210,7 +218,9 @@ Fills fill_gaps(BodyTake take, double floor, Index least) {
     if (plan.rule.empty()) plan = rigid(take, gap, all, seen);
     if (plan.rule.empty()) plan = still(take, gap, seen);
     if (plan.rule.empty()) continue;
+    make_credible(credible * floor * floor, plan.rule);
     const Matrix filled = fill(take, gap, plan.predict, plan.rule);
+    if (!filled.allFinite()) continue;
     fills.positions.block(gap.first, 3 * gap.joint, gap.frames(), 3) = filled.leftCols(3);
     fills.variance.col(gap.joint).segment(gap.first, gap.frames()) = filled.col(3);
   }

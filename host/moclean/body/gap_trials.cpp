@@ -69,12 +69,18 @@ double depth(const Gap& gap, Index frame) {
   return gap.before && gap.after ? std::min(p, 1 - p) : p;
 }
 
-// Weights of least w'Cw that sum to 1, none below 0.
+// Weights of least w'Cw that sum to 1, none below 0; 0 for what has no finite variance.
 Eigen::VectorXd best_weights(Eigen::MatrixXd covariance) {
+  const Eigen::Array<bool, Eigen::Dynamic, 1> known = covariance.diagonal().array().isFinite();
+  for (Index k = 0; k < known.size(); ++k)
+    if (!known(k)) {
+      covariance.row(k).setZero();
+      covariance.col(k).setZero();
+    }
   covariance.diagonal().array() *= 1 + shrinkage;
   covariance.diagonal().array() += std::numeric_limits<double>::min();
-  const Index count = covariance.rows();
-  Eigen::VectorXd used = Eigen::VectorXd::Ones(count);
+  Eigen::VectorXd used = known.cast<double>();
+  if (!known.any()) return used;
   while (true) {
     // Those not used have rows and columns of the unit matrix, and 0 on the right.
     Eigen::MatrixXd c = used.asDiagonal() * covariance * used.asDiagonal();
@@ -135,7 +141,8 @@ void learn_what_is_usual(const BodyTake& take, std::span<const Gap> trials, cons
   for (std::size_t t = 0; t < trials.size(); ++t) {
     Matrix miss = Matrix::Zero(edge_count(trials[t]), 3);
     for (std::size_t k = 0; k < rule.shares.size(); ++k)
-      miss += rule.shares[k].weight * misses(take, trials[t], tried.predictions[t], k);
+      if (rule.shares[k].weight > 0)
+        miss += rule.shares[k].weight * misses(take, trials[t], tried.predictions[t], k);
     rule.usual_miss += miss.squaredNorm() / static_cast<double>(miss.size()) / count;
     const Eigen::VectorXd& unlikeness = tried.predictions[t].made.unlikeness;
     if (unlikeness.size() > 0) rule.usual_unlikeness += unlikeness.mean() / count;
@@ -191,10 +198,13 @@ FillRule learn_fill_rule(const BodyTake& take, std::span<const Gap> trials, Inde
     tried.inner.push_back(probes(trial, probed));
     tried.predictions.push_back(predicted(trial, tried.inner.back(), predict));
   }
-  const Eigen::MatrixXd errors = learn_reaches(take, trials, tried, rule);
+  Eigen::MatrixXd errors = learn_reaches(take, trials, tried, rule);
   const Eigen::VectorXd weights = best_weights(errors.transpose() * errors);
   for (std::size_t k = 0; k < rule.shares.size(); ++k)
     rule.shares[k].weight = weights(static_cast<Index>(k));
+  for (Index k = 0; k < weights.size(); ++k)
+    if (weights(k) <= 0) errors.col(k).setZero();  // which may be none
+  if (weights.sum() <= 0) return {};
   learn_what_is_usual(take, trials, tried, rule);
   learn_profile(trials, tried.inner, errors * weights, rule);
   return rule;
