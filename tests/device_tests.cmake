@@ -4,7 +4,7 @@ target_compile_definitions(device_tests PRIVATE MOCLEAN_TEST_DATA="${PROJECT_SOU
                            MOCLEAN_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
 moclean_precompile_as(device_tests moclean_test_headers)
 
-# The forms for GPUs; they run anywhere. Only their kernels have barriers (tests/structure/barriers.sh).
+# The forms for GPUs; they run anywhere. Only their kernels have barriers (tests/structure/kernels_compile.sh).
 set(group_cases *Group*:*group*:*WG*)
 
 if(MOCLEAN_SANITIZE)

@@ -27,7 +27,7 @@ NoisyBones noisy_bones(const RigidBody& body, const EdgeDistances& d, const Edge
 
 /// The runs of marked samples [frames x joints], `displaced` by so many deviations of noise, in
 /// which the bone is right up to the noise of the run's average, which chance would hardly do.
-/// It does to some of many gross errors: none unless these are 0.3 of the marked samples.
+/// It does to some of many gross errors: none unless these are 0.4 of the marked samples.
 Mask turning_in_noise(const Mask& runs, const NoisyBones& bones, const Matrix& displaced);
 
 /// Takes back flags of runs of joints that no exact distance accuses and that neither leave nor

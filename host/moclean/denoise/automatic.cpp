@@ -83,7 +83,6 @@ void spare_hopeless(const Mask& seen, const Spans& spans, Mask& bad) {
 void look_at_body(double frame_rate, const Automatic& method, Prepared& prepared) {
   const BodyTake take = body_take(prepared.samples, frame_rate);
   BodyFindings found = look_at(take, prepared.samples);
-  prepared.knowledge.size = found.knowledge.size;
   if (found.knowledge.size <= 0) return;
   if (!found.other_motions.empty())
     prepared.spans = windows(method, take.frames(), found.other_motions);

@@ -38,8 +38,7 @@ struct JointKnowledge {
 /// where W is 0 for missing and rejected samples, and P diagonal. Q, P, sigma and W follow from S
 /// and S from them, in turn: first `soft_steps` with Geman-McClure weights of a falling threshold
 /// and P = 1, then `hard_steps` with rejection and an evidence update (MacKay 1992) of Q, P and
-/// sigma. No singular values of the
-/// data are taken. Lengths scale: c D has the motion c S.
+/// sigma. No singular values of the data are taken. Lengths scale: c D has the motion c S.
 ///
 /// Missing samples (NaN) are filled. A column without any sample comes out as NaN.
 struct MatrixNormal {
