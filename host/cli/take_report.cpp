@@ -6,6 +6,12 @@
 namespace moclean::cli {
 namespace {
 
+// Two digits, but no fewer than the whole number has.
+std::string percent(double share) {
+  return share < 0.095 ? fmt::format("{:.2g} %", 100 * share)
+                       : fmt::format("{:.0f} %", 100 * share);
+}
+
 std::string apart(int difference) {
   return difference == 0 ? "equal" : fmt::format("differ by up to {}", difference);
 }
@@ -24,14 +30,14 @@ bool is_changed_much(const TakeReport& take) {
 std::string changed_line(const TakeReport& take) {
   const Change& changed = take.changed;
   std::string line =
-      fmt::format("{}: changed much: {:.2g} % of the samples corrected, {:.2g} % filled",
-                  take.file.string(), 100 * changed.corrected, 100 * changed.filled);
+      fmt::format("{}: changed much: {} of the samples corrected, {} filled", take.file.string(),
+                  percent(changed.corrected), percent(changed.filled));
   if (changed.largest.distance == 0) return line;
   line += fmt::format("; farthest: {} by {:.3g}{} in frame {}", changed.largest.joint,
                       changed.largest.distance, take.unit.empty() ? "" : " " + take.unit,
                       changed.largest.frame);
   if (changed.body_size > 0)
-    line += fmt::format(" ({:.2g} % of the body's size)", 100 * changed.largest_share());
+    line += fmt::format(" ({} of the body's size)", percent(changed.largest_share()));
   return line;
 }
 

@@ -68,7 +68,8 @@ TEST(Kernel, EmptyGridIsNoLaunch) {
 }
 
 TEST(Program, ReportsFileAndLineOfTheKernelThatDoesNotCompile) {
-  const std::string broken = "#line 1 \"broken.cl\"\n\nkernel void f() { undeclared(); }\n";
+  const std::string broken =
+      "#line 1 \"broken.cl\"\n\nkernel void f(global int* x) { *x = undeclared; }\n";
 
   try {
     Kernel(Program(test::device(), broken, defines), "f");

@@ -4,9 +4,16 @@
 
 #include <fmt/format.h>
 
+#include "moclean/core/error.hpp"
+
 namespace moclean::detail {
 
+// Drivers of GPUs allocate at the first use, and then it is a launch that fails; NVIDIA's accepts
+// any size.
 cl::Buffer allocate(const Device& device, std::size_t bytes) {
+  if (bytes > device.info().global_memory)
+    throw DeviceError(fmt::format("{} bytes do not fit the {} of {}", bytes,
+                                  device.info().global_memory, device.info().name));
   return translate_opencl_errors(
       fmt::format("to allocate {} bytes on {}", bytes, device.info().name),
       [&] { return cl::Buffer(device.context(), CL_MEM_READ_WRITE, bytes); });
