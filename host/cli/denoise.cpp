@@ -114,6 +114,7 @@ ExitCode run(DenoiseOptions options) {
                                       options.profile ? Profiling::on : Profiling::off);
   job.backend = opened.report.name;
   job.compute_units = opened.device ? opened.device->info().compute_units : options.jobs;
+  job.on_gpu = opened.device && opened.device->info().kind == DeviceKind::gpu;
   const RunReport report = run_pipeline(job, *opened.backend, interrupt.token());
 
   if (options.profile)

@@ -42,7 +42,8 @@ OpenedBackend open_backend(const BackendOptions& options, bool needed, Profiling
                              .precision = options.precision,
                              .memory_limit = std::min(device->info().usable_memory(),
                                                       device_share(options.memory_limit)),
-                             .tuning = kept});
+                             .tuning = kept,
+                             .jobs = options.jobs});
   BackendReport report{.name = backend->name(),
                        .tuning = backend->tuning(),
                        .tuning_file = kept ? file : fs::path()};

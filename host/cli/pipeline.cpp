@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/core/parallel.hpp"
 #include "moclean/denoise/sample_status.hpp"
 #include "moclean/metric/metric.hpp"
 #include "moclean/solve/reference/reference_backend.hpp"
@@ -48,7 +49,9 @@ std::uint64_t copies_of_sides(const DenoiseOptions& options) {
 }
 
 GroupRules rules_of(const Job& job) {
-  constexpr Index segments_per_unit = 32;
+  // A GPU gives a work-group to every segment; the eigensolver takes as long for one as for as many
+  // as the units hold, ten or more each (docs/gpu.md).
+  constexpr Index segments_per_unit = 32, least_per_gpu_unit = 8;
   const Chain& chain = job.options.chain;
   const LowRank* method = first_low_rank(chain);
   GroupRules rules{.segmentation = method ? method->segmentation : Segmentation{.whole = true}};
@@ -56,6 +59,8 @@ GroupRules rules_of(const Job& job) {
                  .frame_rate_for = needs_frame_rate(chain)};
   if (rules.needs.frame_rate_for.empty() && job.options.max_gap)
     rules.needs.frame_rate_for = "--max-gap";
+  if (job.on_gpu)
+    rules.least_segments = std::max(rules.least_segments, least_per_gpu_unit * job.compute_units);
   rules.full_segments = std::max(rules.least_segments, segments_per_unit * job.compute_units);
   rules.copies = job.options.verify ? copies_verifying : copies_solving;
   if (!job.truths.empty() || !job.options.report.empty()) rules.copies += copies_of_truth;
@@ -180,23 +185,34 @@ class Run {
                                .verification = {},
                                .truth = {}});
     if (verifier_) verify(group, results, verifier_->solve(group, expected, reader_.at_end()));
-    for (std::size_t i = 0; i < results.size(); ++i) finish(group, i, results[i]);
+    finish(group, results);
     ++report_.groups;
     return results;
   }
 
   // What the method has made becomes what the options ask for.
-  void finish(const TakeGroup& group, std::size_t i, Denoised& result) {
-    const Clip& take = group.clips[i];
+  void finish(const TakeGroup& group, std::vector<Denoised>& results) {
+    std::vector<Clip> status(results.size());
+    for_each_index(static_cast<Index>(results.size()), job_.options.jobs, [&](Index take) {
+      const auto i = static_cast<std::size_t>(take);
+      status[i] = finished(group.clips[i], results[i], report_.takes[group.first + i]);
+    });
+    for (std::size_t i = 0; i < results.size(); ++i) {
+      report_.takes[group.first + i].truth = compared(group, i, results[i].clip);
+      if (!job_.options.mask.empty()) masks_[group.first + i] = std::move(status[i]);
+    }
+  }
+
+  // Returns what became of the samples.
+  Clip finished(const Clip& take, Denoised& result, TakeReport& report) const {
     const DenoiseOptions& options = job_.options;
     if (options.max_gap) leave_long_gaps(take, *options.max_gap, result);
     if (options.keep_observed) keep_observed(take, result);
     Clip status = sample_status(take, result);
-    TakeReport& report = report_.takes[group.first + i];
     report.status = count_status(status);
     report.changed = change_of(take, result);
-    report.truth = compared(group, i, result.clip);
-    if (!options.mask.empty()) masks_[group.first + i] = std::move(status);
+    if (options.mask.empty()) status = {};  // memory of many takes
+    return status;
   }
 
   std::optional<Clip> mask_of(std::size_t take) {

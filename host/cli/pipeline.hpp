@@ -22,6 +22,7 @@ struct Job {
   std::vector<std::filesystem::path> truths = {};  ///< one per file; empty: none
   std::string backend = {};                        ///< its name, for reports
   int compute_units = 1;  ///< of the backend: how many segments it wants at once depends on it
+  bool on_gpu = false;    ///< and on this
 };
 
 /// The share of --memory-limit that a device batch may take; the rest is for the host.

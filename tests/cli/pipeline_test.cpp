@@ -151,22 +151,36 @@ TEST_F(Pipeline, AGroupEndsWhenTheDeviceIsFull) {
                                           7 * take_bytes, 7 * take_bytes, 5 * take_bytes));
 }
 
-TEST_F(Pipeline, ALargeDeviceLeavesFourGroupsToOverlap) {
-  write_takes(40);
-  options_.chain = {LowRank{.segmentation = {.segments = 10}}};
-  options_.inputs = {folder_ / "takes"};
-  Job job{.options = options_, .files = expand_folders(options_.inputs), .plan = {}};
-  job.plan = plan_outputs({.inputs = options_.inputs,
-                           .files = job.files,
-                           .output = options_.output,
-                           .outliers = {},
-                           .report = {},
-                           .format = {}});
-  job.compute_units = 1000;
+// A job on 40 takes of 10 segments.
+class LargeDevice : public Pipeline {
+ protected:
+  LargeDevice() {
+    write_takes(40);
+    options_.chain = {LowRank{.segmentation = {.segments = 10}}};
+    options_.inputs = {folder_ / "takes"};
+    job_.files = expand_folders(options_.inputs);
+    job_.plan = plan_outputs({.inputs = options_.inputs,
+                              .files = job_.files,
+                              .output = options_.output,
+                              .outliers = {},
+                              .report = {},
+                              .format = {}});
+  }
 
-  const RunReport report = run_pipeline(job, backend_);
+  Job job_{.options = options_, .files = {}, .plan = {}};
+};
 
-  EXPECT_EQ(report.groups, 4);
+TEST_F(LargeDevice, LeavesFourGroupsToOverlap) {
+  job_.compute_units = 1000;
+
+  EXPECT_EQ(run_pipeline(job_, backend_).groups, 4);
+}
+
+TEST_F(LargeDevice, IsFilledFirstWhereItIsAGpu) {
+  job_.on_gpu = true;
+  job_.compute_units = 20;  // 160 segments, 16 takes
+
+  EXPECT_EQ(run_pipeline(job_, backend_).groups, 3);
 }
 
 TEST_F(Pipeline, NoGroupIsLargerThanItsShareOfTheMemory) {

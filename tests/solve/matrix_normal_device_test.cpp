@@ -244,5 +244,17 @@ TEST(MatrixNormalDevice, IsCutToTheMemoryLimitWithoutChangingABit) {
                               whole.solve(data, MatrixNormal{}).low_rank));
 }
 
+TEST(MatrixNormalDevice, ThreadsOfTheHostLeaveEveryBit) {
+  const SegmentBatch data = batch_of({50, 4, 33, 90, 12}, 21);
+  OpenClBackend alone(test::device()), together(test::device(), {.jobs = 3});
+  const Solution expected = alone.solve(data, MatrixNormal{});
+
+  const Solution solution = together.solve(data, MatrixNormal{});
+
+  EXPECT_TRUE(test::same_bits(solution.low_rank, expected.low_rank));
+  EXPECT_TRUE(test::same_bits(*solution.deviation, *expected.deviation));
+  EXPECT_TRUE(test::same_bits(*solution.trusted, *expected.trusted));
+}
+
 }  // namespace
 }  // namespace moclean

@@ -128,6 +128,7 @@ MatrixNormal matrix_normal_of(const Clip& take, Rejection reject) {
 struct Group {
   MatrixNormal method;
   std::vector<std::size_t> takes;
+  std::vector<Index> first_segments = {};  // of the takes, once they are stacked
 };
 
 // Some of the takes, by columns and by what the method depends on; those that stand still are in
@@ -154,16 +155,17 @@ std::vector<Group> group_alike(std::span<const MovingPart> parts, std::span<cons
 // The windows of a group one below the other; their knowledge goes to its method.
 SegmentBatch stack(std::span<const Prepared> prepared, Group& group) {
   std::vector<Index> first_row = {0};
-  for (const std::size_t t : group.takes)
+  for (const std::size_t t : group.takes) {
+    group.first_segments.push_back(static_cast<Index>(first_row.size()) - 1);
     for (const Span& span : prepared[t].spans) {
       first_row.push_back(first_row.back() + span.frames());
       group.method.knowledge.push_back(cut(prepared[t].knowledge, span));
     }
+  }
   SegmentBatch data(prepared[group.takes.front()].samples.cols(), std::move(first_row));
-  Index segment = 0;
-  for (const std::size_t t : group.takes) {
-    stack_spans(prepared[t].samples, prepared[t].spans, data, segment);
-    segment += static_cast<Index>(prepared[t].spans.size());
+  for (std::size_t i = 0; i < group.takes.size(); ++i) {
+    const Prepared& take = prepared[group.takes[i]];
+    stack_spans(take.samples, take.spans, data, group.first_segments[i]);
   }
   return data;
 }
@@ -257,8 +259,13 @@ Mask rejected_motion(const MovingPart& part, const Prepared& prepared, const Den
 class Solving {
  public:
   Solving(std::span<const MovingPart> parts, std::span<const Prepared> prepared, Rejection reject,
-          Backend& backend, const Monitor& monitor)
-      : parts_(parts), prepared_(prepared), reject_(reject), backend_(backend), monitor_(monitor) {}
+          Backend& backend, int jobs, const Monitor& monitor)
+      : parts_(parts),
+        prepared_(prepared),
+        reject_(reject),
+        backend_(backend),
+        jobs_(jobs),
+        monitor_(monitor) {}
 
   // Puts the results of some takes in their places.
   void solve(std::span<const std::size_t> some, std::vector<Denoised>& results) {
@@ -277,20 +284,40 @@ class Solving {
     const SegmentBatch data = stack(prepared_, group);
     const Solution solution = backend_.solve(data, std::move(group.method), part);
     progress_.finished += data.segments();
-    Index segment = 0;
-    for (const std::size_t t : group.takes) {
-      results[t] = result_of(parts_[t].clip, prepared_[t], solution, segment);
-      segment += static_cast<Index>(prepared_[t].spans.size());
-    }
+    for_each_index(static_cast<Index>(group.takes.size()), jobs_, [&](Index i) {
+      const std::size_t t = group.takes[static_cast<std::size_t>(i)];
+      results[t] = result_of(parts_[t].clip, prepared_[t], solution,
+                             group.first_segments[static_cast<std::size_t>(i)]);
+    });
   }
 
   std::span<const MovingPart> parts_;
   std::span<const Prepared> prepared_;
   Rejection reject_;
   Backend& backend_;
+  int jobs_;
   const Monitor& monitor_;
   Progress progress_;
 };
+
+// Vouches for the motion that was rejected; returns the takes of which that is true of some.
+std::vector<std::size_t> vouch_for_motion(std::span<const MovingPart> parts,
+                                          std::span<const Denoised> results, int jobs,
+                                          std::span<Prepared> prepared) {
+  std::vector<char> found(parts.size());
+  for_each_index(static_cast<Index>(parts.size()), jobs, [&](Index t) {
+    const auto i = static_cast<std::size_t>(t);
+    const Mask motion = rejected_motion(parts[i], prepared[i], results[i]);
+    if (!motion.any()) return;
+    Mask& vouched = prepared[i].knowledge.vouched;
+    vouched = vouched || motion;
+    found[i] = 1;
+  });
+  std::vector<std::size_t> some;
+  for (std::size_t t = 0; t < found.size(); ++t)
+    if (found[t]) some.push_back(t);
+  return some;
+}
 
 // The result of a take of which nothing moves.
 Denoised at_rest(const Clip& take) {
@@ -328,28 +355,21 @@ std::vector<Denoised> AutomaticDenoiser::denoise(std::span<const Clip> takes,
   std::vector<Denoised> results(takes.size());
   std::vector<std::size_t> some(takes.size());
   std::iota(some.begin(), some.end(), 0);
-  Solving solving(parts, prepared, method_.reject, backend_, monitor);
+  Solving solving(parts, prepared, method_.reject, backend_, jobs_, monitor);
   solving.solve(some, results);
-  if (method_.reject == Rejection::automatic) {
-    std::erase_if(some, [&](std::size_t t) {
-      const Mask motion = rejected_motion(parts[t], prepared[t], results[t]);
-      if (!motion.any()) return true;
-      Mask& vouched = prepared[t].knowledge.vouched;
-      vouched = vouched || motion;
-      return false;
-    });
-    solving.solve(some, results);
-  }
+  if (method_.reject == Rejection::automatic)
+    solving.solve(vouch_for_motion(parts, results, jobs_, prepared), results);
   double frames = 0;
   for (const Prepared& one : prepared) frames += static_cast<double>(one.samples.rows());
   const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
-  for (std::size_t t = 0; t < takes.size(); ++t) {
+  for_each_index(static_cast<Index>(takes.size()), jobs_, [&](Index i) {
+    const auto t = static_cast<std::size_t>(i);
     if (parts[t].columns.empty()) results[t] = at_rest(takes[t]);
     put_back(takes[t], parts[t], results[t]);
     leave_unobserved(takes[t], results[t]);
     if (method_.smooth == Smoothing::off) keep_observed(takes[t], results[t]);
     results[t].solve_seconds = seconds * static_cast<double>(takes[t].frames()) / frames;
-  }
+  });
   return results;
 }
 

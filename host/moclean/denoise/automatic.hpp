@@ -65,8 +65,8 @@ void check(const Automatic& method);
 /// frames tell nothing of each other (smooth_in_time.hpp).
 class AutomaticDenoiser final : public Denoiser {
  public:
-  /// `backend` is used by denoise() and has to outlive this object. Up to `jobs` threads look at
-  /// the takes' bodies; the result does not depend on them.
+  /// `backend` is used by denoise() and has to outlive this object. Up to `jobs` threads do
+  /// what concerns one take alone; the result does not depend on them.
   AutomaticDenoiser(const Automatic& method, Backend& backend, int jobs = 1)
       : method_(method), backend_(backend), jobs_(jobs) {}
 

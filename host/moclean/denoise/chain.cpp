@@ -48,7 +48,8 @@ std::vector<Denoised> ChainDenoiser::solve(const Step& step, std::span<const Cli
   if (const auto* automatic = std::get_if<Automatic>(&step))
     return AutomaticDenoiser(*automatic, *backend_, jobs_).denoise(takes, monitor);
   const auto& low_rank = std::get<LowRank>(step);
-  return LowRankDenoiser(low_rank.segmentation, low_rank.method, *backend_).denoise(takes, monitor);
+  return LowRankDenoiser(low_rank.segmentation, low_rank.method, *backend_, jobs_)
+      .denoise(takes, monitor);
 }
 
 std::vector<Denoised> ChainDenoiser::denoise(std::span<const Clip> takes, const Monitor& monitor) {

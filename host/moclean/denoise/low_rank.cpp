@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/core/parallel.hpp"
 #include "moclean/denoise/automatic_plan.hpp"
 #include "moclean/denoise/unobserved.hpp"
 
@@ -17,6 +18,7 @@ namespace {
 // Takes of equal width, whose segments share one batch.
 struct Group {
   std::vector<std::size_t> takes;
+  std::vector<Index> first_segments;  // of the takes
   SegmentBatch data;
 };
 
@@ -40,16 +42,15 @@ void require_usable(const Clip& take, std::size_t index, bool missing_accepted) 
 
 Group stack(std::span<const Clip> takes, std::vector<std::size_t> members,
             std::span<const Spans> cuts) {
-  std::vector<Index> first_row = {0};
-  for (const std::size_t t : members)
-    for (const Span& span : cuts[t]) first_row.push_back(first_row.back() + span.frames());
-  SegmentBatch data(takes[members.front()].samples.cols(), std::move(first_row));
-  Index segment = 0;
+  std::vector<Index> first_row = {0}, first_segments;
   for (const std::size_t t : members) {
-    stack_spans(takes[t].samples, cuts[t], data, segment);
-    segment += static_cast<Index>(cuts[t].size());
+    first_segments.push_back(static_cast<Index>(first_row.size()) - 1);
+    for (const Span& span : cuts[t]) first_row.push_back(first_row.back() + span.frames());
   }
-  return {std::move(members), std::move(data)};
+  SegmentBatch data(takes[members.front()].samples.cols(), std::move(first_row));
+  for (std::size_t i = 0; i < members.size(); ++i)
+    stack_spans(takes[members[i]].samples, cuts[members[i]], data, first_segments[i]);
+  return {std::move(members), std::move(first_segments), std::move(data)};
 }
 
 // Takes of equal width together, in increasing width.
@@ -83,12 +84,13 @@ std::vector<SegmentPlan> plans_of(std::span<const Clip> takes, const Segmentatio
   return automatic_plans(takes, counts, robust_pca ? *robust_pca : RobustPca{}, backend, stop);
 }
 
-void scatter(const Group& group, const Solution& solution, double seconds,
+void scatter(const Group& group, const Solution& solution, double seconds, int jobs,
              std::span<const Clip> takes, std::span<const Spans> cuts,
              std::vector<Denoised>& results) {
-  Index segment = 0;
-  auto outcome = solution.segments.begin();
-  for (const std::size_t t : group.takes) {
+  for_each_index(static_cast<Index>(group.takes.size()), jobs, [&](Index i) {
+    const std::size_t t = group.takes[static_cast<std::size_t>(i)];
+    const Index segment = group.first_segments[static_cast<std::size_t>(i)];
+    auto outcome = solution.segments.begin() + segment;
     Denoised& result = results[t];
     result.clip = unstack(solution.low_rank, cuts[t], segment, takes[t]);
     result.outliers = unstack(solution.sparse, cuts[t], segment, takes[t]);
@@ -100,8 +102,7 @@ void scatter(const Group& group, const Solution& solution, double seconds,
     }
     result.solve_seconds =
         seconds * static_cast<double>(rows) / static_cast<double>(group.data.rows());
-    segment += static_cast<Index>(cuts[t].size());
-  }
+  });
 }
 
 }  // namespace
@@ -134,7 +135,7 @@ std::vector<Denoised> LowRankDenoiser::denoise(std::span<const Clip> takes,
     const Clock::time_point begin = Clock::now();
     const Solution solution = backend_.solve(group.data, method_, part);
     const std::chrono::duration<double> seconds = Clock::now() - begin;
-    scatter(group, solution, seconds.count(), takes, cuts, results);
+    scatter(group, solution, seconds.count(), jobs_, takes, cuts, results);
     all.finished += group.data.segments();
   }
   return results;

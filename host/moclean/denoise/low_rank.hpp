@@ -29,9 +29,10 @@ SegmentPlan plan(const Segmentation& segmentation, Index frames);
 /// with the same weights, so that they add up to the take as those of a segment do.
 class LowRankDenoiser final : public Denoiser {
  public:
-  /// `backend` is used by denoise() and has to outlive this object.
-  LowRankDenoiser(Segmentation segmentation, Method method, Backend& backend)
-      : segmentation_(segmentation), method_(std::move(method)), backend_(backend) {}
+  /// `backend` is used by denoise() and has to outlive this object. Up to `jobs` threads take
+  /// results out of batches.
+  LowRankDenoiser(Segmentation segmentation, Method method, Backend& backend, int jobs = 1)
+      : segmentation_(segmentation), method_(std::move(method)), backend_(backend), jobs_(jobs) {}
 
   std::vector<Denoised> denoise(std::span<const Clip> takes, const Monitor& monitor = {}) override;
 
@@ -39,6 +40,7 @@ class LowRankDenoiser final : public Denoiser {
   Segmentation segmentation_;
   Method method_;
   Backend& backend_;
+  int jobs_;
 };
 
 }  // namespace moclean

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "moclean/core/error.hpp"
+#include "moclean/core/parallel.hpp"
 #include "moclean/solve/matrix_normal_steps.hpp"
 
 namespace moclean::opencl {
@@ -25,11 +26,13 @@ SegmentBatch extended_shape(const SegmentBatch& data, Index first, Index last) {
 
 }  // namespace
 
-// What one batch needs, on the device and beside it.
+// What one batch needs, on the device and beside it. What is computed per window, is by `jobs`
+// threads.
 struct MatrixNormalSolver::Run {
   Run(const Device& device, const SegmentBatch& data, Index first, Index last,
-      const MatrixNormal& method)
-      : host(extended_shape(data, first, last)),
+      const MatrixNormal& method, int threads)
+      : jobs(threads),
+        host(extended_shape(data, first, last)),
         batch(device, host, 0, last - first),
         gradients(device, batch),
         Q(device, batch.square_size()),
@@ -39,21 +42,31 @@ struct MatrixNormalSolver::Run {
         terms(device, windows()) {
     // What no launch writes stays defined: padding, and the entries of windows not active.
     for (auto* buffer : {&Q, &Z, &eigenvalues}) buffer->fill_zero();
+    steps.resize(windows());
+    for_each_index(last - first, jobs, [&](Index b) {
+      steps[static_cast<std::size_t>(b)].emplace(data.segment(first + b), method, first + b);
+    });
     std::vector<std::int32_t> active;
-    for (Index b = first; b < last; ++b) {
-      steps.emplace_back(data.segment(b), method, b);
-      if (!steps.back().trivial()) active.push_back(static_cast<std::int32_t>(b - first));
-    }
+    for (std::int32_t b = 0; b < static_cast<std::int32_t>(last - first); ++b)
+      if (!window(b).trivial()) active.push_back(b);
     batch.select(active);
   }
 
   std::size_t windows() const { return static_cast<std::size_t>(batch.segments()); }
-  MatrixNormalWindow& window(std::int32_t b) { return steps[static_cast<std::size_t>(b)]; }
+  MatrixNormalWindow& window(std::int32_t b) { return *steps[static_cast<std::size_t>(b)]; }
+
+  // work(b) for every active window, several at a time.
+  template <class Work>
+  void for_each_active(const Work& work) const {
+    const auto active = batch.active();
+    for_each_index(batch.active_count(), jobs,
+                   [&](Index i) { work(active[static_cast<std::size_t>(i)]); });
+  }
 
   // Writes value_of(b) of every active window, [rows x columns].
   template <class ValueOf>
   void upload(const ValueOf& value_of, Buffer<double>& target) {
-    for (const std::int32_t b : batch.active()) host.segment(b) = value_of(b);
+    for_each_active([&](std::int32_t b) { host.segment(b) = value_of(b); });
     target.write(host.storage());
   }
 
@@ -61,7 +74,7 @@ struct MatrixNormalSolver::Run {
   template <class ValueOf>
   void upload_vector(const ValueOf& value_of, Buffer<double>& target) {
     std::vector<double> values(batch.vector_size(), 0);
-    for (const std::int32_t b : batch.active()) vector_of(values, b) = value_of(b);
+    for_each_active([&](std::int32_t b) { vector_of(values, b) = value_of(b); });
     target.write(values);
   }
 
@@ -101,16 +114,18 @@ struct MatrixNormalSolver::Run {
             Eigen::OuterStride<>(segment.order_pitch)};
   }
 
+  int jobs;
   SegmentBatch host;  // stacked matrices on their way
   Batch batch;
   ConjugateGradients::Memory gradients;
   Buffer<double> Q, Z, eigenvalues, f;
   Buffer<std::int32_t> terms;
-  std::vector<MatrixNormalWindow> steps;
+  std::vector<std::optional<MatrixNormalWindow>> steps;
 };
 
-MatrixNormalSolver::MatrixNormalSolver(const Device& device, const Tuning& tuning)
+MatrixNormalSolver::MatrixNormalSolver(const Device& device, const Tuning& tuning, int jobs)
     : device_(device),
+      jobs_(jobs),
       products_((moclean::check(tuning), tuning.products), device, tuning),
       eigen_(device, tuning),
       gradients_(device, tuning) {}
@@ -152,7 +167,7 @@ void MatrixNormalSolver::accelerate(Run& run) {
 void MatrixNormalSolver::add_prior(Run& run) {
   std::vector<double> Q(run.batch.square_size());
   run.Q.read(Q);
-  for (const std::int32_t b : run.batch.active()) run.window(b).add_prior(run.square_of(Q, b));
+  run.for_each_active([&](std::int32_t b) { run.window(b).add_prior(run.square_of(Q, b)); });
   run.Q.write(Q);
 }
 
@@ -207,11 +222,10 @@ void MatrixNormalSolver::weigh(Run& run) {
   run.gradients.R.read(R);
   std::vector<Eigen::VectorXd> diagonals(run.windows());
   run.gradients.S.read(run.host.storage());
-  for (const std::int32_t b : run.batch.active()) {
-    Eigen::VectorXd& diagonal = diagonals[static_cast<std::size_t>(b)];
-    diagonal = run.diagonal_of(R, b);
+  run.for_each_active([&](std::int32_t b) {
+    diagonals[static_cast<std::size_t>(b)] = run.diagonal_of(R, b);
     run.window(b).weigh(run.host.segment(b), run.square_of(R, b));
-  }
+  });
   run.set_stiffness([&](std::int32_t b) { return diagonals[static_cast<std::size_t>(b)]; });
   run.set_precisions();
   run.upload([&](std::int32_t b) -> const Matrix& { return run.window(b).weights(); },
@@ -225,7 +239,7 @@ void MatrixNormalSolver::weigh(Run& run) {
 void MatrixNormalSolver::solve(const SegmentBatch& data, Index first, Index last,
                                const MatrixNormal& method, Solution& solution,
                                const Finished& finished, const std::stop_token& stop) {
-  Run run(device_, data, first, last, method);
+  Run run(device_, data, first, last, method, jobs_);
   if (run.batch.active_count() > 0) {
     run.terms.write(
         std::vector<std::int32_t>(run.windows(), static_cast<std::int32_t>(data.columns())));
@@ -243,8 +257,7 @@ void MatrixNormalSolver::solve(const SegmentBatch& data, Index first, Index last
     weigh(run);
     smooth(run, method);
     run.gradients.S.read(run.host.storage());  // for the noise, and for the next step to learn from
-    for (const std::int32_t b : run.batch.active())
-      run.window(b).estimate_noise(run.host.segment(b));
+    run.for_each_active([&](std::int32_t b) { run.window(b).estimate_noise(run.host.segment(b)); });
   }
   if (run.batch.active_count() > 0) eigen_.check(run.batch);
   finish(run, first, solution);
@@ -256,21 +269,22 @@ void MatrixNormalSolver::finish(Run& run, Index first, Solution& solution) {
   run.gradients.iterations.read(iterations);
   std::vector<double> Z(run.batch.square_size());
   run.Z.read(Z);
-  for (std::size_t i = 0; i < run.windows(); ++i) {
-    const Index b = first + static_cast<Index>(i);
-    const MatrixNormalWindow& window = run.steps[i];
-    const auto own = run.host.segment(static_cast<Index>(i));
+  for_each_index(run.batch.segments(), jobs_, [&](Index i) {
+    const Index b = first + i;
+    const auto place = static_cast<std::int32_t>(i);
+    const MatrixNormalWindow& window = run.window(place);
+    const auto own = run.host.segment(i);
     solution.low_rank.segment(b) = window.trivial() ? window.filled() : window.cleaned(own);
     solution.trusted->segment(b) = window.trusted().cast<double>();
-    solution.deviation->segment(b) =
-        window.deviation(own, run.square_of(Z, static_cast<std::int32_t>(i)));
+    solution.deviation->segment(b) = window.deviation(own, run.square_of(Z, place));
     solution.sparse.segment(b) = window.rejected(solution.low_rank.segment(b));
-    solution.segments[static_cast<std::size_t>(b)] = {.iterations = iterations[i],
-                                                      .rank = {},
-                                                      .residual = 0,
-                                                      .converged = false,
-                                                      .fixed_steps = true};
-  }
+    solution.segments[static_cast<std::size_t>(b)] = {
+        .iterations = iterations[static_cast<std::size_t>(i)],
+        .rank = {},
+        .residual = 0,
+        .converged = false,
+        .fixed_steps = true};
+  });
 }
 
 }  // namespace moclean::opencl

@@ -16,8 +16,9 @@ namespace moclean::opencl {
 /// host computes the statistics of MatrixNormalWindow between two steps.
 class MatrixNormalSolver {
  public:
+  /// Up to `jobs` threads compute the statistics of windows; the result does not depend on them.
   /// Throws ArgumentError for a tuning out of its range.
-  MatrixNormalSolver(const Device& device, const Tuning& tuning);
+  MatrixNormalSolver(const Device& device, const Tuning& tuning, int jobs = 1);
 
   using Finished = std::function<void(Index)>;
 
@@ -40,6 +41,7 @@ class MatrixNormalSolver {
   void finish(Run& run, Index first, Solution& solution);
 
   const Device& device_;
+  int jobs_;
   Products products_;
   Eigensolver eigen_;
   ConjugateGradients gradients_;

@@ -40,14 +40,15 @@ Tuning tuning_of(const Device& device, const OpenClOptions& options) {
 class OpenClBackend::Worker {
  public:
   /// Uses the queue of `device` itself. `tuning` has to outlive the worker.
-  Worker(const Device& device, Precision precision, const Tuning& tuning)
-      : tuning_(tuning), precision_(precision), device_(device) {}
+  Worker(const Device& device, const OpenClOptions& options, const Tuning& tuning)
+      : tuning_(tuning), precision_(options.precision), jobs_(options.jobs), device_(device) {}
 
   /// Has a queue of its own.
-  Worker(const Device& device, Device::AnotherQueue another, Precision precision,
+  Worker(const Device& device, Device::AnotherQueue another, const OpenClOptions& options,
          const Tuning& tuning)
       : tuning_(tuning),
-        precision_(precision),
+        precision_(options.precision),
+        jobs_(options.jobs),
         own_(std::in_place, device, another),
         device_(*own_) {}
 
@@ -69,7 +70,7 @@ class OpenClBackend::Worker {
   }
   template <class Use>
   void with(const MatrixNormal&, const Use& use) {
-    if (!matrix_normal_) matrix_normal_.emplace(device_, tuning_);
+    if (!matrix_normal_) matrix_normal_.emplace(device_, tuning_, jobs_);
     use(*matrix_normal_);
   }
   template <class Spectral, class Use>
@@ -90,6 +91,7 @@ class OpenClBackend::Worker {
 
   const Tuning& tuning_;
   Precision precision_;
+  int jobs_;
   std::optional<Device> own_;
   const Device& device_;
   std::optional<RobustPcaSolver> robust_pca_;
@@ -104,7 +106,7 @@ OpenClBackend::OpenClBackend(const Device& device, const OpenClOptions& options)
   moclean::check(tuning_);
   require_double_precision(device);
   if (options_.memory_limit == 0) options_.memory_limit = device.info().usable_memory();
-  workers_.push_back(std::make_unique<Worker>(device, options.precision, tuning_));
+  workers_.push_back(std::make_unique<Worker>(device, options, tuning_));
 }
 
 OpenClBackend::~OpenClBackend() = default;
@@ -162,7 +164,7 @@ void OpenClBackend::prepare_workers(const opencl::BatchPlan& plan) {
   if (workers_.size() > permitted) workers_.resize(permitted);
   while (workers_.size() < wanted)
     workers_.push_back(
-        std::make_unique<Worker>(device_, Device::AnotherQueue{}, options_.precision, tuning_));
+        std::make_unique<Worker>(device_, Device::AnotherQueue{}, options_, tuning_));
 }
 
 template <class Chosen>

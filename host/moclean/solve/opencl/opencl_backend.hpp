@@ -20,6 +20,7 @@ struct OpenClOptions {
   /// batches, and in fewer at a time. 0: three quarters of the device's memory.
   std::uint64_t memory_limit = 0;
   std::optional<Tuning> tuning = {};  ///< default_tuning() of the device if empty
+  int jobs = 1;  ///< threads for what the host does between launches; no result depends on them
 };
 
 /// Smallest tolerance that float matrices are sure to reach.
