@@ -39,11 +39,19 @@ kernel __attribute__((reqd_work_group_size(WG, 1, 1))) void group_accumulate(
   for (int j = get_local_id(0); j < n; j += WG) {
     global real* column = vectors + s.square + (n - 1) * pitch + j;  // upwards: the product's rows
     for (int i = 0; i < n; ++i) column[-i * pitch] = i == j;
-    for (int k = 0; k < n - 1; ++k) {
-      global const real* u = reflectors + s.square + k * pitch;
-      real product = 0;
-      for (int i = k + 1; i < n; ++i) product = fma(u[i], column[-i * pitch], product);
-      for (int i = k + 1; i < n; ++i) column[-i * pitch] = fma(-u[i], product, column[-i * pitch]);
+    // One pass per reflector over the column: what it leaves is multiplied by the next at once.
+    global const real* u = reflectors + s.square;
+    real product = 0;
+    for (int i = 1; i < n; ++i) product = fma(u[i], column[-i * pitch], product);
+    for (int k = 0; k < n - 1; ++k, u += pitch) {
+      column[-(k + 1) * pitch] = fma(-u[k + 1], product, column[-(k + 1) * pitch]);
+      real next = 0;
+      for (int i = k + 2; i < n; ++i) {
+        const real left = fma(-u[i], product, column[-i * pitch]);
+        column[-i * pitch] = left;
+        next = fma(u[pitch + i], left, next);
+      }
+      product = next;
     }
   }
 }
