@@ -59,9 +59,10 @@ moclean_oclgrind(linalg
       *GroupProductsTest.R*/WG128_25x93)
 moclean_oclgrind(solve
   SMALL *OpenClAgreement*/OpenClOwn_ae_3x5 *OpenClAgreement*/OpenClGroup64_ae_3x5
-        *OtherMethodAgreement*/OpenClOwn_*_3x5 *MatrixNormalAgreement*/OpenClOwn_9x6
-        *MatrixNormalAgreement*/OpenClGroup64_9x6
-  ALL *GroupSweepTest*WG64_* *OtherMethodAgreement*/OpenClOwn_*_3x5 *OpenClAgreement*/OpenClOwn_*3x5
+        *OtherMethodAgreement*/OpenClOwn_*_3x5 *OtherMethodAgreement*/OpenClGroup128_Tslra_3x5
+        *MatrixNormalAgreement*/OpenClOwn_9x6 *MatrixNormalAgreement*/OpenClGroup64_9x6
+  ALL *GroupSweepTest*WG64_* *GroupTemporalTest.T*WG64 *OtherMethodAgreement*/OpenClGroup128_Tslra_3x5
+      *OtherMethodAgreement*/OpenClOwn_*_3x5 *OpenClAgreement*/OpenClOwn_*3x5
       *OpenClAgreement*/OpenClOwn_*100x1 *OpenClAgreement*/OpenClGroup64_ae_3x5 *MixedPrecision.IsWithin*/0
       *MatrixNormalAgreement*/OpenClOwn_9x6 *MatrixNormalAgreement*/OpenClGroup64_9x6
       *MissingAgreement*/OpenClOwn_ae_3x5)

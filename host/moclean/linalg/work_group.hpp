@@ -16,6 +16,12 @@ inline Defines group_defines(const Device& device, int work_group) {
   return defines;
 }
 
+/// A work-group per active block of rows.
+inline Grid group_per_block(const Batch& batch, int work_group) {
+  const auto width = static_cast<std::size_t>(work_group);
+  return {.x = width * static_cast<std::size_t>(batch.active_blocks()), .group_x = width};
+}
+
 /// Builds `programs` for the largest work-group of a power of two up to `wanted` work-items that
 /// the device can run all their kernels with, and returns it. `Programs(device, work_group)` builds
 /// them, `largest_group()` tells what they can run with.
