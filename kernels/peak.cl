@@ -26,15 +26,27 @@ kernel void multiply_add(int rounds,
 }
 
 // target <- source. On a CPU (VW > 1) each work-item copies a stretch of its own; on a GPU
-// neighbours copy neighbouring numbers.
+// neighbours copy neighbouring numbers, four loads in flight at a time.
 // Launch: `items` work-items.
 kernel void copy(int items,
-                 long size,                  // reals, a multiple of items x VW
+                 long size,                  // reals; VW > 1: a multiple of items x VW
                  global const real* source,  // [size]
                  global real* target) {      // [size]
   const long item = get_global_id(0);
-  const long begin = VW > 1 ? item * (size / items) : item;
-  const long end = VW > 1 ? begin + size / items : size;
-  const long step = VW > 1 ? VW : items;
-  for (long i = begin; i < end; i += step) store(target + i, load(source + i));
+#if VW > 1
+  const long begin = item * (size / items), end = begin + size / items;
+  for (long i = begin; i < end; i += VW) store(target + i, load(source + i));
+#else
+  const long step = items;
+  long i = item;
+  for (; i + 3 * step < size; i += 4 * step) {
+    const real v0 = source[i], v1 = source[i + step];
+    const real v2 = source[i + 2 * step], v3 = source[i + 3 * step];
+    target[i] = v0;
+    target[i + step] = v1;
+    target[i + 2 * step] = v2;
+    target[i + 3 * step] = v3;
+  }
+  for (; i < size; i += step) target[i] = source[i];
+#endif
 }

@@ -240,6 +240,14 @@ INSTANTIATE_TEST_SUITE_P(
                      testing::Values(Shape{3, 5}, Shape{25, 93}, Shape{300, 9})),
     name_of);
 
+// The only one of these methods whose steps over entries have a form for GPUs.
+INSTANTIATE_TEST_SUITE_P(
+    OtherWorkGroups, OtherMethodAgreement,
+    testing::Combine(testing::Values(BackendKind::opencl_group64, BackendKind::opencl_group256),
+                     testing::Values(Kind::tslra),
+                     testing::Values(Shape{1, 1}, Shape{61, 129}, Shape{300, 9})),
+    name_of);
+
 TEST(OtherMethods, AgreeOnDataOfExactlyLowRank) {
   const Matrix data = test::random_matrix(80, 4, 2) * test::random_matrix(4, 30, 3);
   for (const Kind kind : {Kind::tsvd, Kind::svt_soft, Kind::svt_given}) {

@@ -26,5 +26,6 @@ extern const std::string_view search_direction;
 extern const std::string_view search_direction_group;
 extern const std::string_view sweep;
 extern const std::string_view temporal;
+extern const std::string_view temporal_group;
 
 }  // namespace moclean::kernel_source

@@ -1,7 +1,9 @@
 #include "moclean/linalg/peak.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
+#include <cstdint>
 #include <limits>
 
 #include "moclean/device/kernel_source.hpp"
@@ -47,17 +49,27 @@ double flops_per_second(const Device& device) {
   return 2.0 * rounds * sums * static_cast<double>(items * width) / seconds;
 }
 
+// Doubles to copy: 16 MiB on a CPU. A GPU has done that in the time of a launch, or has it all in
+// its cache (50 MiB on an H100): up to 1 GiB there, a thirty-second of its memory.
+std::size_t copied_size(const DeviceInfo& device) {
+  constexpr std::uint64_t cpu = 16u << 20, gpu = 1u << 30;
+  if (device.kind != DeviceKind::gpu) return cpu / sizeof(double);
+  const std::uint64_t most = std::min({gpu, device.global_memory / 32, device.max_allocation});
+  return static_cast<std::size_t>(std::max(cpu, std::bit_floor(most)) / sizeof(double));
+}
+
 double bytes_per_second(const Device& device) {
-  constexpr std::size_t size = std::size_t{1} << 21;  // doubles, 16 MiB
+  const std::size_t size = copied_size(device.info());
   const Program program(device, kernel_source::peak, common_defines(device));
   Kernel copy(program, "copy");
   Buffer<double> source(device, size), target(device, size);
   source.fill_zero();
   const std::size_t items = items_of(device);
   const Grid grid{.x = items, .group_x = items % 64 == 0 ? 64ul : 1ul};
-  const double seconds = least_seconds(
-      device, [&] { copy(grid, static_cast<cl_int>(items), cl_long{size}, source, target); });
-  return 2.0 * size * sizeof(double) / seconds;
+  const double seconds = least_seconds(device, [&] {
+    copy(grid, static_cast<cl_int>(items), static_cast<cl_long>(size), source, target);
+  });
+  return 2.0 * static_cast<double>(size * sizeof(double)) / seconds;
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace moclean {
 struct Peak {
   double double_flops = 0;  ///< multiply-adds on registers, counted as two
   double float_flops = 0;
-  double bytes = 0;  ///< read and written while copying 32 MiB, far more than its caches
+  double bytes = 0;  ///< read and written while copying far more than its caches hold
 };
 
 /// Runs two short kernels of kernels/peak.cl, about a fifth of a second on a CPU.

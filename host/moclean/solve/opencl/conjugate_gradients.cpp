@@ -80,8 +80,7 @@ Index ConjugateGradients::scratch_of(Index rows, Index columns) const {
 
 void ConjugateGradients::operator()(const Batch& batch, Memory& m, Products& products,
                                     int most_iterations, double tolerance) {
-  const Grid columns{.x = static_cast<std::size_t>(batch.pitch() / vector_width(device_)),
-                     .y = static_cast<std::size_t>(batch.active_count())};
+  const Grid columns = per_column(batch, device_, NumberType::float64);
   const auto search = [&](const Buffer<double>& z, double until, bool begins) {
     if (groups_)
       search_in_groups(batch, m, products, z, until, begins);
@@ -117,8 +116,7 @@ void ConjugateGradients::search_in_tiles(const Batch& batch, Memory& m, const Bu
 void ConjugateGradients::search_in_groups(const Batch& batch, Memory& m, Products& products,
                                           const Buffer<double>& z, double tolerance, bool begins) {
   grow(curvatures_, device_, batch.stacked_size());
-  const auto width = static_cast<std::size_t>(work_group_);
-  const Grid grid{.x = width * static_cast<std::size_t>(batch.active_blocks()), .group_x = width};
+  const Grid grid = group_per_block(batch, work_group_);
   groups_->differences(grid, batch.device_segments(), batch.device_blocks(), batch.active_blocks(),
                        z, m.p_before, m.precisions, m.rz, m.rz_before, m.bz, cl_double{tolerance},
                        cl_int{begins}, m.p, curvatures_, m.iterations);

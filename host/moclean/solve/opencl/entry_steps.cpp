@@ -49,9 +49,7 @@ EntrySteps<Real>::EntrySteps(const Device& device, const Tuning& tuning) {
 
 template <class Real>
 Grid EntrySteps<Real>::grid(const Batch& batch) const {
-  if (!in_groups_) return per_block(batch);
-  const auto width = static_cast<std::size_t>(work_group_);
-  return {.x = width * static_cast<std::size_t>(batch.active_blocks()), .group_x = width};
+  return in_groups_ ? group_per_block(batch, work_group_) : per_block(batch);
 }
 
 template <class Real>

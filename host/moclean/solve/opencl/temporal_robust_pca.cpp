@@ -10,6 +10,7 @@
 
 #include "moclean/core/error.hpp"
 #include "moclean/device/kernel_source.hpp"
+#include "moclean/linalg/work_group.hpp"
 #include "moclean/solve/opencl/stacked_rows.hpp"
 
 namespace moclean::opencl {
@@ -77,14 +78,31 @@ struct TemporalRobustPcaSolver::Run {
   std::vector<TemporalStart> starts;
 };
 
+TemporalRobustPcaSolver::Programs::Programs(const Device& device, std::string_view source,
+                                            const Defines& defines)
+    : program(device, source, defines), shift(program, "shift"), update(program, "update") {}
+
+std::size_t TemporalRobustPcaSolver::Programs::largest_group() const {
+  return std::min(shift.largest_group(), update.largest_group());
+}
+
+TemporalRobustPcaSolver::GroupPrograms::GroupPrograms(const Device& device, int work_group)
+    : Programs(device, kernel_source::temporal_group, group_defines(device, work_group)) {}
+
 TemporalRobustPcaSolver::TemporalRobustPcaSolver(const Device& device, const Tuning& tuning)
     : device_(device),
       products_((moclean::check(tuning), tuning.products), device, tuning),
       eigen_(device, tuning),
-      banded_(device, difference),
-      program_(device, kernel_source::temporal, common_defines(device)),
-      shift_(program_, "shift"),
-      update_(program_, "update") {}
+      banded_(device, difference) {
+  if (tuning.products == ProductPath::group)
+    work_group_ = fit_work_group(in_groups_, device, tuning.work_group);
+  else
+    in_vectors_.emplace(device, kernel_source::temporal, common_defines(device));
+}
+
+Grid TemporalRobustPcaSolver::grid(const Batch& batch) const {
+  return in_groups_ ? group_per_block(batch, work_group_) : per_block(batch);
+}
 
 std::uint64_t TemporalRobustPcaSolver::memory_of(Index rows, Index columns,
                                                  const TemporalRobustPca&) const {
@@ -145,8 +163,8 @@ void TemporalRobustPcaSolver::update_smooth(Run& run) {
 // L = SVT_{nu/mu}(S - U/mu)
 void TemporalRobustPcaSolver::update_low_rank(Run& run, const TemporalRobustPca& method) {
   run.mus.write(run.mu);
-  shift_(per_block(run.batch), run.batch.device_segments(), run.batch.device_blocks(),
-         run.batch.active_blocks(), run.mus, run.S, run.U, run.X);
+  programs().shift(grid(run.batch), run.batch.device_segments(), run.batch.device_blocks(),
+                   run.batch.active_blocks(), run.mus, run.S, run.U, run.X);
   products_.gram(run.batch, run.X, run.G);
   eigen_.all_values(run.batch, run.G, run.eigenvalues);
   run.eigenvalues.read(run.host_eigenvalues);
@@ -178,9 +196,9 @@ void TemporalRobustPcaSolver::update_sparse(Run& run, const TemporalRobustPca& m
     run.mu[i] = std::min(method.rho * run.mu[i], run.mu_max[i]);
   }
   run.next_mus.write(run.mu);
-  update_(per_block(run.batch), run.batch.device_segments(), run.batch.device_blocks(),
-          run.batch.active_blocks(), run.mus, run.next_mus, run.lambdas, run.D, run.P, run.S, run.L,
-          run.E, run.Y, run.U, run.X, run.partial_gaps, run.partial_splits);
+  programs().update(grid(run.batch), run.batch.device_segments(), run.batch.device_blocks(),
+                    run.batch.active_blocks(), run.mus, run.next_mus, run.lambdas, run.D, run.P,
+                    run.S, run.L, run.E, run.Y, run.U, run.X, run.partial_gaps, run.partial_splits);
 }
 
 // Segments that have converged or are out of iterations leave the batch; returns how many.

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <stop_token>
+#include <string_view>
 
 #include "moclean/linalg/banded.hpp"
 #include "moclean/linalg/eigensolver.hpp"
@@ -12,7 +14,9 @@ namespace moclean::opencl {
 
 /// Robust PCA with a second-difference penalty of many segments at once on a device, in double; the
 /// steps are those of solve/reference/temporal_robust_pca.cpp, in the same order. The host looks at
-/// the singular values of every iteration and asks for the vectors of those above nu/mu only.
+/// the singular values of every iteration and asks for the vectors of those above nu/mu only. Steps
+/// over entries are taken by a work-item per block of rows (kernels/temporal.cl), or with
+/// ProductPath::group by a work-group (kernels/temporal_group.cl).
 class TemporalRobustPcaSolver {
  public:
   /// Throws ArgumentError for a tuning out of its range.
@@ -30,6 +34,19 @@ class TemporalRobustPcaSolver {
  private:
   struct Run;
 
+  struct Programs {
+    Programs(const Device& device, std::string_view source, const Defines& defines);
+    std::size_t largest_group() const;
+
+    Program program;
+    Kernel shift, update;
+  };
+  struct GroupPrograms : Programs {
+    GroupPrograms(const Device& device, int work_group);
+  };
+
+  Programs& programs() { return in_groups_ ? *in_groups_ : *in_vectors_; }
+  Grid grid(const Batch& batch) const;
   void start(Run& run, const TemporalRobustPca& method);
   void update_smooth(Run& run);
   void update_low_rank(Run& run, const TemporalRobustPca& method);
@@ -40,8 +57,9 @@ class TemporalRobustPcaSolver {
   Products products_;
   Eigensolver eigen_;
   Banded<double> banded_;
-  Program program_;
-  Kernel shift_, update_;
+  int work_group_ = 1;
+  std::optional<Programs> in_vectors_;
+  std::optional<GroupPrograms> in_groups_;
 };
 
 }  // namespace moclean::opencl
