@@ -14,6 +14,8 @@
 // Launch: (vectors of columns, active segments); `shared` factors: one work-item per active
 // segment; penalise: one work-item per block of rows.
 
+#include "load_rows.cl"
+
 #ifndef WIDTH
 #error "WIDTH is not defined: half-bandwidth, 1, 2 or 3"
 #endif
@@ -37,16 +39,23 @@ inline real penalty_entry(int row, int k, int rows) {
 // The bands of one vector of columns, or those its segment shares. `shared` is a constant.
 typedef struct {
   global real* first;
-  size_t to_next_row, to_next_band;
+  uint to_next_row;
+  size_t to_next_band;
 } bands_t;
 
-INLINE vreal band(const bands_t m, const int shared, int row, int k) {
-  global const real* p = m.first + row * m.to_next_row + k * m.to_next_band;
-  return shared ? (vreal)*p : load(p);
+// Band k of `count` rows from `row` on, down (step 1) or up (step -1); count is a constant.
+INLINE void load_band(vreal* rows, const bands_t m, const int shared, int row, int k,
+                      const int step, const int count) {
+  global const real* p = m.first + k * m.to_next_band;
+  const int to_next = step * (int)m.to_next_row;
+  const uint at = row * m.to_next_row;
+  if (!shared) load_rows(rows, p, at, to_next, count);
+#pragma unroll ROWS
+  for (int i = 0; shared && i < count; ++i) rows[i] = p[(uint)(at + i * to_next)];
 }
 
 INLINE void set_band(const bands_t m, const int shared, int row, int k, vreal value) {
-  global real* p = m.first + row * m.to_next_row + k * m.to_next_band;
+  global real* p = m.first + k * m.to_next_band + (uint)(row * m.to_next_row);
   if (shared)
     *p = lane_max(value);  // all are the same
   else
@@ -72,76 +81,127 @@ INLINE void assemble(const bands_t a, const int shared, const segment_t s,
 
 INLINE vreal inverse_pivot(vreal pivot) { return pivot > 0 ? 1 / pivot : 0; }
 
-// u_k = L(i, i - k) D(i - k), from the farthest entry on; l and m are the rows before, one and two.
-INLINE void factor(const bands_t a, const int shared, int rows) {
-  vreal l1 = 0, l2 = 0, m1 = 0, inverse1 = 0, inverse2 = 0, inverse3 = 0;
-  for (int i = 0; i < rows; ++i) {
-    vreal pivot = band(a, shared, i, 0), u1 = band(a, shared, i, 1), u2 = 0, u3 = 0;
-    if (WIDTH > 1) u2 = band(a, shared, i, 2);
+// The rows of a factorization before the next one, the nearest first.
+typedef struct {
+  vreal l1, l2, m1, inverse1, inverse2, inverse3;  // l, m: of the rows before, one and two
+} pivots_t;
+
+// `count` rows from row i on: u_k = L(i, i - k) D(i - k), from the farthest entry on.
+INLINE void factor_rows(const bands_t a, const int shared, int i, const int count, pivots_t* p) {
+  vreal pivots[ROWS], near[ROWS], middle[ROWS], far[ROWS];
+  load_band(pivots, a, shared, i, 0, 1, count);
+  load_band(near, a, shared, i, 1, 1, count);
+  if (WIDTH > 1) load_band(middle, a, shared, i, 2, 1, count);
+  if (WIDTH > 2) load_band(far, a, shared, i, 3, 1, count);
+#pragma unroll ROWS
+  for (int k = 0; k < count; ++k) {
+    vreal pivot = pivots[k], u1 = near[k], u2 = 0, u3 = 0;
+    if (WIDTH > 1) u2 = middle[k];
     if (WIDTH > 2) {
-      u3 = band(a, shared, i, 3);
-      u2 = fma(-u3, m1, u2);
-      u1 = fma(-u3, l2, u1);
+      u3 = far[k];
+      u2 = fma(-u3, p->m1, u2);
+      u1 = fma(-u3, p->l2, u1);
     }
-    if (WIDTH > 1) u1 = fma(-u2, l1, u1);
-    m1 = l1;
+    if (WIDTH > 1) u1 = fma(-u2, p->l1, u1);
+    p->m1 = p->l1;
     if (WIDTH > 2) {
-      const vreal l3 = u3 * inverse3;
+      const vreal l3 = u3 * p->inverse3;
       pivot = fma(-u3, l3, pivot);
-      set_band(a, shared, i, 3, l3);
+      set_band(a, shared, i + k, 3, l3);
     }
     if (WIDTH > 1) {
-      l2 = u2 * inverse2;
-      pivot = fma(-u2, l2, pivot);
-      set_band(a, shared, i, 2, l2);
+      p->l2 = u2 * p->inverse2;
+      pivot = fma(-u2, p->l2, pivot);
+      set_band(a, shared, i + k, 2, p->l2);
     }
-    l1 = u1 * inverse1;
-    pivot = fma(-u1, l1, pivot);
-    set_band(a, shared, i, 1, l1);
-    inverse3 = inverse2;
-    inverse2 = inverse1;
-    inverse1 = inverse_pivot(pivot);
-    set_band(a, shared, i, 0, inverse1);
+    p->l1 = u1 * p->inverse1;
+    pivot = fma(-u1, p->l1, pivot);
+    set_band(a, shared, i + k, 1, p->l1);
+    p->inverse3 = p->inverse2;
+    p->inverse2 = p->inverse1;
+    p->inverse1 = inverse_pivot(pivot);
+    set_band(a, shared, i + k, 0, p->inverse1);
   }
 }
 
-// L z = b down the rows, L' x = z / D up again; the three rows solved last stay in registers.
-INLINE void solve(const bands_t l, const int shared, const segment_t s, global const real* b,
-                  global real* x) {
-  vreal x1 = 0, x2 = 0, x3 = 0;
-  for (int i = 0; i < s.rows; ++i) {
-    vreal z = load(b + i * (size_t)s.pitch);
-    if (WIDTH > 2) z = fma(-band(l, shared, i, 3), x3, z);
-    if (WIDTH > 1) z = fma(-band(l, shared, i, 2), x2, z);
-    z = fma(-band(l, shared, i, 1), x1, z);
-    x3 = x2;
-    x2 = x1;
-    x1 = z;
-    store(x + i * (size_t)s.pitch, z);
+INLINE void factor(const bands_t a, const int shared, int rows) {
+  pivots_t p = {0, 0, 0, 0, 0, 0};
+  int i = 0;
+  for (; i + ROWS <= rows; i += ROWS) factor_rows(a, shared, i, ROWS, &p);
+  for (; i < rows; ++i) factor_rows(a, shared, i, 1, &p);
+}
+
+// The three rows solved last stay in registers, and of the rows below what leads to those above.
+typedef struct {
+  vreal x1, x2, x3, l1, l2, l3, next2, next3, nearest3;
+} walk_t;
+
+// `count` rows of L z = b from row i on.
+INLINE void rows_downwards(const bands_t l, const int shared, int pitch, int i, const int count,
+                           global const real* b, global real* x, walk_t* w) {
+  vreal right[ROWS], near[ROWS], middle[ROWS], far[ROWS];
+  load_rows(right, b, i * pitch, pitch, count);
+  load_band(near, l, shared, i, 1, 1, count);
+  if (WIDTH > 1) load_band(middle, l, shared, i, 2, 1, count);
+  if (WIDTH > 2) load_band(far, l, shared, i, 3, 1, count);
+#pragma unroll ROWS
+  for (int k = 0; k < count; ++k) {
+    vreal z = right[k];
+    if (WIDTH > 2) z = fma(-far[k], w->x3, z);
+    if (WIDTH > 1) z = fma(-middle[k], w->x2, z);
+    z = fma(-near[k], w->x1, z);
+    w->x3 = w->x2;
+    w->x2 = w->x1;
+    w->x1 = z;
+    store(x + (uint)((i + k) * pitch), z);
   }
-  vreal l1 = 0, l2 = 0, l3 = 0, next2 = 0, next3 = 0, nearest3 = 0;
-  x1 = x2 = x3 = 0;
-  for (int i = s.rows - 1; i >= 0; --i) {
-    vreal z = load(x + i * (size_t)s.pitch) * band(l, shared, i, 0);
-    if (WIDTH > 2) z = fma(-l3, x3, z);
-    if (WIDTH > 1) z = fma(-l2, x2, z);
-    z = fma(-l1, x1, z);
-    x3 = x2;
-    x2 = x1;
-    x1 = z;
-    store(x + i * (size_t)s.pitch, z);
-    // Row i - 1 takes L(i, i - 1), L(i + 1, i - 1) and L(i + 2, i - 1).
-    l1 = band(l, shared, i, 1);
+}
+
+// `count` rows of L' x = z / D from row i up.
+INLINE void rows_upwards(const bands_t l, const int shared, int pitch, int i, const int count,
+                         global real* x, walk_t* w) {
+  vreal right[ROWS], inverse[ROWS], near[ROWS], middle[ROWS], far[ROWS];
+  load_rows(right, x, i * pitch, -pitch, count);
+  load_band(inverse, l, shared, i, 0, -1, count);
+  load_band(near, l, shared, i, 1, -1, count);
+  if (WIDTH > 1) load_band(middle, l, shared, i, 2, -1, count);
+  if (WIDTH > 2) load_band(far, l, shared, i, 3, -1, count);
+#pragma unroll ROWS
+  for (int k = 0; k < count; ++k) {
+    vreal z = right[k] * inverse[k];
+    if (WIDTH > 2) z = fma(-w->l3, w->x3, z);
+    if (WIDTH > 1) z = fma(-w->l2, w->x2, z);
+    z = fma(-w->l1, w->x1, z);
+    w->x3 = w->x2;
+    w->x2 = w->x1;
+    w->x1 = z;
+    store(x + (uint)((i - k) * pitch), z);
+    // The row above takes L(i, i - 1), L(i + 1, i - 1) and L(i + 2, i - 1).
+    w->l1 = near[k];
     if (WIDTH > 1) {
-      l2 = next2;
-      next2 = band(l, shared, i, 2);
+      w->l2 = w->next2;
+      w->next2 = middle[k];
     }
     if (WIDTH > 2) {
-      l3 = nearest3;
-      nearest3 = next3;
-      next3 = band(l, shared, i, 3);
+      w->l3 = w->nearest3;
+      w->nearest3 = w->next3;
+      w->next3 = far[k];
     }
   }
+}
+
+// L z = b down the rows, L' x = z / D up again.
+INLINE void solve(const bands_t l, const int shared, const segment_t s, global const real* b,
+                  global real* x) {
+  const walk_t begin = {0, 0, 0, 0, 0, 0, 0, 0, 0};
+  walk_t w = begin;
+  int i = 0;
+  for (; i + ROWS <= s.rows; i += ROWS) rows_downwards(l, shared, s.pitch, i, ROWS, b, x, &w);
+  for (; i < s.rows; ++i) rows_downwards(l, shared, s.pitch, i, 1, b, x, &w);
+  w = begin;
+  int left = s.rows;
+  for (; left >= ROWS; left -= ROWS) rows_upwards(l, shared, s.pitch, left - 1, ROWS, x, &w);
+  for (; left > 0; --left) rows_upwards(l, shared, s.pitch, left - 1, 1, x, &w);
 }
 
 kernel void assemble_columns(global const segment_t* segments,  // [segments]

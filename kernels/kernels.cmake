@@ -2,7 +2,7 @@
 # defines moclean::kernel_source::STEM (declared in host/moclean/device/kernel_source.hpp).
 set(moclean_included_kernels
     ${PROJECT_SOURCE_DIR}/kernels/conjugate_sums.cl ${PROJECT_SOURCE_DIR}/kernels/entry.cl
-    ${PROJECT_SOURCE_DIR}/kernels/state.cl
+    ${PROJECT_SOURCE_DIR}/kernels/load_rows.cl ${PROJECT_SOURCE_DIR}/kernels/state.cl
     ${PROJECT_SOURCE_DIR}/kernels/temporal_entry.cl ${PROJECT_SOURCE_DIR}/kernels/tiles.cl)
 function(moclean_embed_kernels target)
   foreach(kernel ${ARGN})

@@ -58,11 +58,11 @@ moclean_oclgrind(linalg
       *GroupProducts*/WG16_3x5 *GroupProductsTest*/WG64_17x1 *GroupProductsTest.Gram*/WG128_25x93
       *GroupProductsTest.R*/WG128_25x93)
 moclean_oclgrind(solve
-  SMALL *OpenClAgreement*/OpenClOwn_ae_3x5 *OpenClAgreement*/OpenClGroup64_ae_3x5
+  SMALL *ColumnRecurrence*Scalar1 *OpenClAgreement*/OpenClOwn_ae_3x5 *OpenClAgreement*/OpenClGroup64_ae_3x5
         *OtherMethodAgreement*/OpenClOwn_*_3x5 *OtherMethodAgreement*/OpenClGroup128_Tslra_3x5
         *MatrixNormalAgreement*/OpenClOwn_9x6 *MatrixNormalAgreement*/OpenClGroup64_9x6
-  ALL *GroupSweepTest*WG64_* *GroupTemporalTest.T*WG64 *OtherMethodAgreement*/OpenClGroup128_Tslra_3x5
-      *OtherMethodAgreement*/OpenClOwn_*_3x5 *OpenClAgreement*/OpenClOwn_*3x5
+  ALL *ColumnRecurrence*Scalar* *GroupSweepTest*WG64_* *GroupTemporalTest.T*WG64
+      *OtherMethodAgreement*/OpenClGroup128_Tslra_3x5 *OtherMethodAgreement*/OpenClOwn_*_3x5 *OpenClAgreement*/OpenClOwn_*3x5
       *OpenClAgreement*/OpenClOwn_*100x1 *OpenClAgreement*/OpenClGroup64_ae_3x5 *MixedPrecision.IsWithin*/0
       *MatrixNormalAgreement*/OpenClOwn_9x6 *MatrixNormalAgreement*/OpenClGroup64_9x6
       *MissingAgreement*/OpenClOwn_ae_3x5)

@@ -5,6 +5,7 @@
 #include "moclean/core/error.hpp"
 #include "moclean/device/kernel_source.hpp"
 #include "moclean/linalg/work.hpp"
+#include "moclean/linalg/work_group.hpp"
 
 namespace moclean {
 namespace {
@@ -46,8 +47,7 @@ SharedBands<Real> Banded<Real>::shared_bands(const Batch& batch) const {
 
 template <class Real>
 Grid Banded<Real>::per_vector(const Batch& batch) const {
-  return {.x = static_cast<std::size_t>(batch.pitch() / vector_width(*device_, number_type<Real>)),
-          .y = static_cast<std::size_t>(batch.active_count())};
+  return per_column(batch, *device_, number_type<Real>);
 }
 
 template <class Real>

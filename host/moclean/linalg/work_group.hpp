@@ -22,6 +22,16 @@ inline Grid group_per_block(const Batch& batch, int work_group) {
   return {.x = width * static_cast<std::size_t>(batch.active_blocks()), .group_x = width};
 }
 
+/// A work-item per vector of columns and active segment. On a GPU, whose vectors have one real,
+/// neighbours share a group, so that they read neighbouring reals together.
+inline Grid per_column(const Batch& batch, const Device& device, NumberType type) {
+  constexpr std::size_t warp = 32;
+  const int width = vector_width(device, type);
+  return {.x = static_cast<std::size_t>(batch.pitch() / width),
+          .y = static_cast<std::size_t>(batch.active_count()),
+          .group_x = width > 1 ? 1 : std::min(warp, device.info().max_work_group)};
+}
+
 /// Builds `programs` for the largest work-group of a power of two up to `wanted` work-items that
 /// the device can run all their kernels with, and returns it. `Programs(device, work_group)` builds
 /// them, `largest_group()` tells what they can run with.

@@ -80,8 +80,7 @@ Index ConjugateGradients::scratch_of(Index rows, Index columns) const {
 
 void ConjugateGradients::operator()(const Batch& batch, Memory& m, Products& products,
                                     int most_iterations, double tolerance) {
-  const Grid columns{.x = static_cast<std::size_t>(batch.pitch() / vector_width(device_)),
-                     .y = static_cast<std::size_t>(batch.active_count())};
+  const Grid columns = per_column(batch, device_, NumberType::float64);
   const auto search = [&](const Buffer<double>& z, double until, bool begins) {
     if (groups_)
       search_in_groups(batch, m, products, z, until, begins);
