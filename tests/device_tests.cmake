@@ -52,14 +52,14 @@ function(moclean_oclgrind name)
 endfunction()
 
 moclean_oclgrind(linalg
-  SMALL Norms.* ScaleRows.* *own_3x5 *SymmetricEigenTest.Decomp*/3 *GroupEigenTest*/WG4_n5 *GroupProducts*/WG16_3x5
-  ALL Norms.* ScaleRows.* *own_3x5 *own_17x1 *own_25x93 *SymmetricEigenTest.Decomp*/1 *SymmetricEigenTest.Decomp*/3
+  SMALL Norms.* *GroupNorms.A*WG64 ScaleRows.* *own_3x5 *SymmetricEigenTest.Decomp*/3 *GroupEigenTest*/WG4_n5 *GroupProducts*/WG16_3x5
+  ALL Norms.* *GroupNorms.A*WG64 ScaleRows.* *own_3x5 *own_17x1 *own_25x93 *SymmetricEigenTest.Decomp*/1 *SymmetricEigenTest.Decomp*/3
       *SymmetricEigenTest.Decomp*/9 *GroupEigenTest*/WG4_n5 *GroupEigenTest*/WG64_n16 GroupEigen.DecomposesABatch*
       *GroupProducts*/WG16_3x5 *GroupProductsTest*/WG64_17x1 *GroupProductsTest.Gram*/WG128_25x93
       *GroupProductsTest.R*/WG128_25x93)
 moclean_oclgrind(solve
   SMALL *ColumnRecurrence*Scalar1 *OpenClAgreement*/OpenClOwn_ae_3x5 *OpenClAgreement*/OpenClGroup64_ae_3x5
-        *OtherMethodAgreement*/OpenClOwn_*_3x5 *OtherMethodAgreement*/OpenClGroup128_Tslra_3x5
+        *OtherMethodAgreement*/OpenClOwn_*_3x5 *OtherMethodAgreement*/OpenClGroup64_Tslra_1x1
         *MatrixNormalAgreement*/OpenClOwn_9x6 *MatrixNormalAgreement*/OpenClGroup64_9x6
   ALL *ColumnRecurrence*Scalar* *GroupSweepTest*WG64_* *GroupTemporalTest.T*WG64
       *OtherMethodAgreement*/OpenClGroup128_Tslra_3x5 *OtherMethodAgreement*/OpenClOwn_*_3x5 *OpenClAgreement*/OpenClOwn_*3x5

@@ -18,6 +18,7 @@ extern const std::string_view banded;
 extern const std::string_view conjugate_gradients;
 extern const std::string_view grams;
 extern const std::string_view norms;
+extern const std::string_view norms_group;
 extern const std::string_view peak;
 extern const std::string_view products;
 extern const std::string_view robust_pca;

@@ -10,8 +10,9 @@
 namespace moclean {
 
 /// -D options of kernels in work-groups: the common ones and WG.
-inline Defines group_defines(const Device& device, int work_group) {
-  Defines defines = common_defines(device);
+inline Defines group_defines(const Device& device, int work_group,
+                             NumberType type = NumberType::float64) {
+  Defines defines = common_defines(device, type);
   defines["WG"] = std::to_string(work_group);
   return defines;
 }

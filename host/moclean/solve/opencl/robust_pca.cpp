@@ -63,7 +63,7 @@ RobustPcaSolver<Real>::RobustPcaSolver(const Device& device, const Tuning& tunin
       sweep_rows_((check(tuning), tuning.sweep_rows)),
       products_(tuning.products, device, tuning),
       eigen_(device, tuning, mixed ? 1e-8 : 1e-12),  // far below what the iteration makes of it
-      norms_(device),
+      norms_(device, tuning),
       entries_(device, tuning),
       steps_(device, kernel_source::robust_pca, common_defines(device)),
       start_state_(steps_, "start_state"),
