@@ -15,7 +15,7 @@ SegmentBatch::SegmentBatch(Index columns, std::vector<Index> first_row)
   for (std::size_t b = 1; b < first_row_.size(); ++b)
     if (first_row_[b] <= first_row_[b - 1])
       throw ShapeError("segment " + std::to_string(b - 1) + " of a batch has no rows");
-  storage_ = Matrix::Zero(rows(), pitch());
+  storage_.resize(static_cast<std::size_t>(rows() * pitch()));
 }
 
 MatrixView SegmentBatch::block(Index first, Index count) {

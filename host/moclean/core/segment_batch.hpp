@@ -3,6 +3,7 @@
 #include <span>
 #include <vector>
 
+#include "moclean/core/large_memory.hpp"
 #include "moclean/core/matrix.hpp"
 
 namespace moclean {
@@ -47,17 +48,13 @@ class SegmentBatch {
   ConstMatrixView block(Index first, Index count) const;
 
   /// The raw storage with padding, rows() * pitch() doubles.
-  std::span<double> storage() {
-    return {storage_.data(), static_cast<std::size_t>(storage_.size())};
-  }
-  std::span<const double> storage() const {
-    return {storage_.data(), static_cast<std::size_t>(storage_.size())};
-  }
+  std::span<double> storage() { return storage_; }
+  std::span<const double> storage() const { return storage_; }
 
  private:
   Index columns_ = 0;
   std::vector<Index> first_row_ = {0};
-  Matrix storage_;
+  std::vector<double, LargeAllocator<double>> storage_;  // [rows x pitch]
 };
 
 }  // namespace moclean

@@ -1,5 +1,6 @@
 #include "moclean/solve/opencl/opencl_backend.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <mutex>
 
@@ -16,6 +17,15 @@
 
 namespace moclean {
 namespace {
+
+/// Queues for a method that leaves a GPU waiting for the host nine tenths of the time
+/// (docs/gpu.md).
+constexpr int host_bound_queues = 4;
+
+int queues_of(const Tuning& tuning, const DeviceInfo& device, const Method& method) {
+  const bool waits = device.kind == DeviceKind::gpu && std::holds_alternative<MatrixNormal>(method);
+  return waits ? std::max(tuning.queues, host_bound_queues) : tuning.queues;
+}
 
 /// Bytes of the cache that batches in flight should share; no bound on devices other than CPUs.
 std::uint64_t shared_cache(const DeviceInfo& device) {
@@ -65,7 +75,7 @@ class OpenClBackend::Worker {
   }
   template <class Use>
   void with(const TemporalRobustPca&, const Use& use) {
-    if (!temporal_) temporal_.emplace(device_, tuning_);
+    if (!temporal_) temporal_.emplace(device_, tuning_, jobs_);
     use(*temporal_);
   }
   template <class Use>
@@ -151,7 +161,7 @@ opencl::BatchPlan OpenClBackend::plan_of(const SegmentBatch& data, const Method&
   return opencl::plan_batches(sizes, {.memory = options_.memory_limit,
                                       .allocation = device.max_allocation,
                                       .cache = shared_cache(device),
-                                      .queues = tuning_.queues,
+                                      .queues = queues_of(tuning_, device, method),
                                       .lanes = lanes ? vector_width(device_) : 1,
                                       .segments = tuning_.batch_segments});
 }

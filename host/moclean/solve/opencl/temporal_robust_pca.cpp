@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "moclean/core/error.hpp"
+#include "moclean/core/parallel.hpp"
 #include "moclean/device/kernel_source.hpp"
 #include "moclean/linalg/work_group.hpp"
 #include "moclean/solve/opencl/stacked_rows.hpp"
@@ -24,7 +25,7 @@ constexpr Index stacked_matrices = 8, square_matrices = 3, vectors = 2, scalars 
 // What one batch needs, on the device and beside it.
 struct TemporalRobustPcaSolver::Run {
   Run(const Device& device, const Banded<double>& banded, const SegmentBatch& data, Index first,
-      Index last, const TemporalRobustPca& method)
+      Index last, const TemporalRobustPca& method, int jobs)
       : batch(device, data, first, last),
         D(device, batch.stacked_size()),
         P(device, batch.stacked_size()),
@@ -58,7 +59,10 @@ struct TemporalRobustPcaSolver::Run {
         outcomes(segments()) {
     // What no launch writes stays defined: segments of norm zero, rows of Z that are not wanted.
     for (auto* buffer : {&S, &L, &E, &Y, &U, &G, &Z, &W, &eigenvalues}) buffer->fill_zero();
-    for (Index b = first; b < last; ++b) starts.push_back(start_temporal(data.segment(b), method));
+    starts.resize(segments());
+    for_each_index(last - first, jobs, [&](Index b) {
+      starts[static_cast<std::size_t>(b)] = start_temporal(data.segment(first + b), method);
+    });
   }
 
   std::size_t segments() const { return static_cast<std::size_t>(batch.segments()); }
@@ -89,8 +93,10 @@ std::size_t TemporalRobustPcaSolver::Programs::largest_group() const {
 TemporalRobustPcaSolver::GroupPrograms::GroupPrograms(const Device& device, int work_group)
     : Programs(device, kernel_source::temporal_group, group_defines(device, work_group)) {}
 
-TemporalRobustPcaSolver::TemporalRobustPcaSolver(const Device& device, const Tuning& tuning)
+TemporalRobustPcaSolver::TemporalRobustPcaSolver(const Device& device, const Tuning& tuning,
+                                                 int jobs)
     : device_(device),
+      jobs_(jobs),
       products_((moclean::check(tuning), tuning.products), device, tuning),
       eigen_(device, tuning),
       banded_(device, difference) {
@@ -132,8 +138,8 @@ void TemporalRobustPcaSolver::start(Run& run, const TemporalRobustPca& method) {
   run.lambdas.write(lambdas);
   SegmentBatch values(run.starts.front().data.cols(), first_rows);
   const auto upload = [&](const auto& value_of, Buffer<double>& target) {
-    for (std::size_t b = 0; b < run.segments(); ++b)
-      values.segment(static_cast<Index>(b)) = value_of(b);
+    for_each_index(values.segments(), jobs_,
+                   [&](Index b) { values.segment(b) = value_of(static_cast<std::size_t>(b)); });
     target.write(values.storage());
   };
   upload([&](std::size_t b) -> const Matrix& { return run.starts[b].observed; }, run.P);
@@ -229,7 +235,7 @@ Index TemporalRobustPcaSolver::retire(Run& run, const TemporalRobustPca& method)
 void TemporalRobustPcaSolver::solve(const SegmentBatch& data, Index first, Index last,
                                     const TemporalRobustPca& method, Solution& solution,
                                     const Finished& finished, const std::stop_token& stop) {
-  Run run(device_, banded_, data, first, last, method);
+  Run run(device_, banded_, data, first, last, method, jobs_);
   start(run, method);
   const Index trivial = run.batch.segments() - run.batch.active_count();
   if (trivial > 0) finished(trivial);

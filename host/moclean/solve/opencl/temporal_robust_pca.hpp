@@ -20,7 +20,7 @@ namespace moclean::opencl {
 class TemporalRobustPcaSolver {
  public:
   /// Throws ArgumentError for a tuning out of its range.
-  TemporalRobustPcaSolver(const Device& device, const Tuning& tuning);
+  TemporalRobustPcaSolver(const Device& device, const Tuning& tuning, int jobs = 1);
 
   using Finished = std::function<void(Index)>;
 
@@ -54,6 +54,7 @@ class TemporalRobustPcaSolver {
   Index retire(Run& run, const TemporalRobustPca& method);
 
   const Device& device_;
+  int jobs_;
   Products products_;
   Eigensolver eigen_;
   Banded<double> banded_;
