@@ -135,6 +135,7 @@ TEST(Tuning, DefaultFormsFollowTheKindOfDevice) {
   EXPECT_EQ(default_tuning(cpu).products, ProductPath::own);
   EXPECT_EQ(default_tuning(gpu).eigen, EigenForm::group);
   EXPECT_EQ(default_tuning(gpu).products, ProductPath::group);
+  EXPECT_EQ(default_tuning(gpu).work_group, 64);
 }
 
 TEST(Tuning, DefaultQueuesFollowTheComputeUnitsOfACpu) {

@@ -54,7 +54,7 @@ void check(const Tuning& tuning) {
 
 Tuning default_tuning(const DeviceInfo& device) {
   if (device.kind == DeviceKind::gpu)
-    return {.products = ProductPath::group, .eigen = EigenForm::group};
+    return {.products = ProductPath::group, .work_group = 64, .eigen = EigenForm::group};
   if (device.kind != DeviceKind::cpu) return {};
   return {.queues = std::clamp(device.compute_units, 1, most_default_queues)};
 }
