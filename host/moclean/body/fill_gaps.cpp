@@ -146,8 +146,10 @@ Plan regressed(const BodyTake& take, const Gap& gap, const Neighbours& all, Usab
   if (frames.size() < fewest_postures || features.empty()) return {};
   auto regressions = std::make_shared<const Regressions>(take, gap, all, features, frames);
   Plan plan;
-  plan.predict = [regressions](const Gap& one, const Frames& some) {
-    return regressions->predict(one, some);
+  plan.predict = [&take, &all, regressions](const Gap& one, const Frames& some) {
+    Candidates found = regressions->predict(one, some);
+    found.push_back(carried(take, first_of(all, fewest_carriers), one, some));
+    return found;
   };
   plan.rule = learn(take, gap, usable, plan.predict);
   return plan;
