@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -17,14 +18,13 @@ namespace {
 
 constexpr std::array<std::size_t, 3> carriers = {3, 5, 8};
 constexpr std::size_t fewest_carriers = 3, few_near = 4, many_near = 8;
-constexpr std::size_t most_features = 20;
-constexpr Index lean_features = 8;
+constexpr Index most_features = 20;
 constexpr double share_with_features = 0.6;  // of the frames a feature may not cost
 constexpr std::size_t fewest_postures = 20, most_postures = 400;
 constexpr std::size_t most_trials = 12, fewest_trials = 3;
 constexpr Index probes_per_trial = 5;
-constexpr std::size_t always_regressed = 100, frames_per_regression = 10;
 constexpr double lag_of_gap = 0.4;
+constexpr double least_variance_share = 1e-4;  // of the disagreement of candidates
 constexpr double credible = 1e-6;  // least variance of a fill, over that of a steady distance
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
@@ -65,7 +65,7 @@ std::vector<Index> features_of(const BodyTake& take, const Neighbours& all, Usab
   const auto enough =
       static_cast<std::size_t>(share_with_features * static_cast<double>(count_of(usable)));
   for (const Neighbour& n : all) {
-    if (features.size() == most_features) break;
+    if (std::ssize(features) == most_features) break;
     Usable fewer = with(take, usable, n.joint);
     if (count_of(fewer) < enough) continue;
     usable = std::move(fewer);
@@ -98,28 +98,27 @@ FillRule learn(const BodyTake& take, const Gap& gap, const Usable& usable,
     const std::vector<Gap> some = trials(gap, length, probes_per_trial, most_trials, usable);
     if (some.size() < fewest_trials) continue;
     FillRule rule = learn_fill_rule(take, some, probes_per_trial, predict);
-    for (double& v : rule.variances)
-      v *= static_cast<double>(gap.frames()) / static_cast<double>(length);
+    rule.variance_share *=
+        std::sqrt(static_cast<double>(gap.frames()) / static_cast<double>(length));
     return rule;
   }
   return {};
 }
 
-// Regressions on the posture.
+// Regressions on the posture, and carrying.
 struct Regressions {
   LocalPostures few, many, world;
-  PostureRegression rich, wide, lean, moved, moved_in_world;
+  PostureRegression usual, wide, moved, moved_in_world;
 
   Regressions(const BodyTake& take, const Gap& gap, const Neighbours& all,
               const std::vector<Index>& features, const Frames& frames)
       : few(take, gap.joint, first_of(all, few_near), features, frames),
         many(take, gap.joint, first_of(all, many_near), features, frames),
         world(take, gap.joint, {}, features, frames),
-        rich(few, static_cast<Index>(features.size())),
-        wide(many, static_cast<Index>(features.size())),
-        lean(few, std::min(static_cast<Index>(features.size()), lean_features)),
-        moved(few, static_cast<Index>(features.size()), lag(gap, frames)),
-        moved_in_world(world, static_cast<Index>(features.size()), lag(gap, frames)) {}
+        usual(few),
+        wide(many),
+        moved(few, lag(gap, frames)),
+        moved_in_world(world, lag(gap, frames)) {}
   Regressions(const Regressions&) = delete;
   Regressions& operator=(const Regressions&) = delete;
 
@@ -128,17 +127,19 @@ struct Regressions {
     return std::max<Index>(2, static_cast<Index>(lag_of_gap * static_cast<double>(span)));
   }
 
-  void predict(const Gap& gap, const Frames& frames, Candidates& found) const {
-    rich.predict(gap, frames, {1e-5, 1e-4}, found);
-    wide.predict(gap, frames, {1e-5}, found);
-    lean.predict(gap, frames, {1e-3}, found);
-    moved.predict(gap, frames, {1e-4, 1e-2}, found);
-    moved_in_world.predict(gap, frames, {1e-3}, found);
+  Candidates predict(const Gap& gap, const Frames& frames) const {
+    const LocalPostures::Others in_few = few.others(frames), in_many = many.others(frames);
+    Candidates found{few.carried(gap, frames, in_few), many.carried(gap, frames, in_many)};
+    usual.predict(gap, in_few, {{1e-5, most_features}, {1e-4, most_features}, {1e-3, 8}}, found);
+    wide.predict(gap, in_many, {{1e-5, most_features}}, found);
+    moved.predict(gap, in_few, {{1e-4, most_features}, {1e-2, most_features}}, found);
+    moved_in_world.predict(gap, world.others(frames), {{1e-3, most_features}}, found);
+    return found;
   }
 };
 
 Plan regressed(const BodyTake& take, const Gap& gap, const Neighbours& all, Usable usable) {
-  if (all.size() <= fewest_carriers) return {};
+  if (all.size() < few_near) return {};
   for (const Neighbour& n : first_of(all, many_near)) usable = with(take, usable, n.joint);
   const std::vector<Index> features = features_of(take, all, usable);
   const Frames frames = thinned(usable, most_postures);
@@ -146,11 +147,8 @@ Plan regressed(const BodyTake& take, const Gap& gap, const Neighbours& all, Usab
   auto regressions = std::make_shared<const Regressions>(take, gap, all, features, frames);
   Plan plan;
   plan.predict = [&take, &all, regressions](const Gap& one, const Frames& some) {
-    Candidates found;
-    for (const std::size_t count : carriers)
-      if (count <= all.size())
-        found.positions.push_back(carried(take, first_of(all, count), one, some));
-    regressions->predict(one, some, found);
+    Candidates found = regressions->predict(one, some);
+    found.push_back(carried(take, first_of(all, fewest_carriers), one, some));
     return found;
   };
   plan.rule = learn(take, gap, usable, plan.predict);
@@ -164,8 +162,7 @@ Plan rigid(const BodyTake& take, const Gap& gap, const Neighbours& all, Usable u
   plan.predict = [&take, &all](const Gap& one, const Frames& some) {
     Candidates found;
     for (const std::size_t count : carriers)
-      if (count <= all.size())
-        found.positions.push_back(carried(take, first_of(all, count), one, some));
+      if (count <= all.size()) found.push_back(carried(take, first_of(all, count), one, some));
     return found;
   };
   plan.rule = learn(take, gap, usable, plan.predict);
@@ -175,28 +172,10 @@ Plan rigid(const BodyTake& take, const Gap& gap, const Neighbours& all, Usable u
 Plan still(const BodyTake& take, const Gap& gap, const Usable& usable) {
   Plan plan;
   plan.predict = [&take](const Gap& one, const Frames& some) {
-    return Candidates{{held(take, one, some)}, {}};
+    return Candidates{held(take, one, some)};
   };
   plan.rule = learn(take, gap, usable, plan.predict);
   return plan;
-}
-
-// Regressions take longer than carrying: of very many gaps the longest have them.
-Index shortest_regressed(const std::vector<Gap>& gaps, Index frames) {
-  const std::size_t most =
-      std::max(always_regressed, static_cast<std::size_t>(frames) / frames_per_regression);
-  if (gaps.size() <= most) return 0;
-  std::vector<Index> lengths;
-  for (const Gap& gap : gaps) lengths.push_back(gap.frames());
-  std::ranges::sort(lengths, std::ranges::greater{});
-  return lengths[most] + 1;
-}
-
-// Where a joint stood still in the trials, or was filled by another program, nothing is missed and
-// nothing wrong: that is no promise for the gap.
-void make_credible(double least, FillRule& rule) {
-  rule.usual_miss = std::max(rule.usual_miss, least);
-  for (double& variance : rule.variances) variance = std::max(variance, least);
 }
 
 }  // namespace
@@ -205,7 +184,6 @@ Fills fill_gaps(BodyTake take, double floor, Index least) {
   bridge(least, take);
   const std::vector<Gap> gaps = gaps_of(take, least);
   if (gaps.empty()) return {};
-  const Index long_enough = shortest_regressed(gaps, take.frames());
   Spreads spreads(take);
   Fills fills{Matrix::Zero(take.frames(), 3 * take.joints()),
               Matrix::Constant(take.frames(), take.joints(), infinite)};
@@ -213,16 +191,16 @@ Fills fill_gaps(BodyTake take, double floor, Index least) {
     const Neighbours all = steady_neighbours(take, spreads, floor, gap);
     const Usable seen =
         with(take, Usable(static_cast<std::size_t>(take.frames()), true), gap.joint);
-    Plan plan;
-    if (gap.frames() >= long_enough) plan = regressed(take, gap, all, seen);
+    Plan plan = regressed(take, gap, all, seen);
     if (plan.rule.empty()) plan = rigid(take, gap, all, seen);
     if (plan.rule.empty()) plan = still(take, gap, seen);
     if (plan.rule.empty()) continue;
-    make_credible(credible * floor * floor, plan.rule);
+    plan.rule.variance_share = std::max(plan.rule.variance_share, least_variance_share);
     const Matrix filled = fill(take, gap, plan.predict, plan.rule);
     if (!filled.allFinite()) continue;
     fills.positions.block(gap.first, 3 * gap.joint, gap.frames(), 3) = filled.leftCols(3);
-    fills.variance.col(gap.joint).segment(gap.first, gap.frames()) = filled.col(3);
+    fills.variance.col(gap.joint).segment(gap.first, gap.frames()) =
+        filled.col(3).array() + credible * floor * floor;
   }
   return fills;
 }

@@ -8,11 +8,15 @@
 
 #include <Eigen/Cholesky>
 
+#include "moclean/core/order_statistics.hpp"
+
 namespace moclean {
 namespace {
 
 constexpr std::array<double, 4> reaches = {0.05, 0.2, 0.7, 20};
-constexpr double shrinkage = 0.05;  // of the errors' covariance to its diagonal
+constexpr double least_share = 0.1;  // of the usual disagreement
+constexpr double near_edge = 0.2;    // depth up to which a single candidate is surer
+constexpr double shrinkage = 0.05;   // of the errors' covariance to its diagonal
 
 struct Prediction {
   Frames frames;  // the edges come first
@@ -40,15 +44,15 @@ Matrix misses(const BodyTake& take, const Gap& gap, const Prediction& prediction
   Matrix found(edge_count(gap), 3);
   for (Index e = 0; e < found.rows(); ++e)
     found.row(e) = take.position(prediction.frames[static_cast<std::size_t>(e)], gap.joint) -
-                   prediction.made.positions[k].row(e);
+                   prediction.made[k].row(e);
   return found;
 }
 
 // The candidate without its edges, misses at these taken out.
 Matrix bridged(const Gap& gap, const Prediction& prediction, std::size_t k, const Matrix& miss,
                double reach) {
-  const Index edges = miss.rows(), count = prediction.made.positions[k].rows() - edges;
-  Matrix result = prediction.made.positions[k].bottomRows(count);
+  const Index edges = miss.rows(), count = prediction.made[k].rows() - edges;
+  Matrix result = prediction.made[k].bottomRows(count);
   const double frames = reach * static_cast<double>(gap.frames() + 1);
   for (Index i = 0; i < count; ++i) {
     const Index frame = prediction.frames[static_cast<std::size_t>(i + edges)];
@@ -119,7 +123,7 @@ Eigen::VectorXd errors_of(const BodyTake& take, std::span<const Gap> trials, con
 Eigen::MatrixXd learn_reaches(const BodyTake& take, std::span<const Gap> trials, const Tried& tried,
                               FillRule& rule) {
   Eigen::MatrixXd errors;
-  const std::size_t count = tried.predictions.front().made.positions.size();
+  const std::size_t count = tried.predictions.front().made.size();
   for (std::size_t k = 0; k < count; ++k) {
     Eigen::VectorXd best;
     rule.shares.push_back({0, 0});
@@ -135,56 +139,62 @@ Eigen::MatrixXd learn_reaches(const BodyTake& take, std::span<const Gap> trials,
   return errors;
 }
 
-void learn_what_is_usual(const BodyTake& take, std::span<const Gap> trials, const Tried& tried,
-                         FillRule& rule) {
-  const auto count = static_cast<double>(trials.size());
-  for (std::size_t t = 0; t < trials.size(); ++t) {
-    Matrix miss = Matrix::Zero(edge_count(trials[t]), 3);
-    for (std::size_t k = 0; k < rule.shares.size(); ++k)
-      if (rule.shares[k].weight > 0)
-        miss += rule.shares[k].weight * misses(take, trials[t], tried.predictions[t], k);
-    rule.usual_miss += miss.squaredNorm() / static_cast<double>(miss.size()) / count;
-    const Eigen::VectorXd& unlikeness = tried.predictions[t].made.unlikeness;
-    if (unlikeness.size() > 0) rule.usual_unlikeness += unlikeness.mean() / count;
-  }
-}
+// A fill without the edges of its gap, and how far its candidates disagree.
+struct Combined {
+  Matrix positions;
+  Eigen::VectorXd disagreement;
+  double missed = 0;  // mean square of a coordinate at the edges
+};
 
-void learn_profile(std::span<const Gap> trials, const std::vector<Frames>& probed,
-                   const Eigen::VectorXd& errors, FillRule& rule) {
-  struct Bin {
-    double depth, sum, count;
-  };
-  std::vector<Bin> bins;
-  Index row = 0;
-  for (std::size_t t = 0; t < trials.size(); ++t)
-    for (const Index frame : probed[t]) {
-      const double d = depth(trials[t], frame);
-      const auto near = [&](const Bin& bin) { return std::abs(bin.depth - d) < 0.05; };
-      auto bin = std::ranges::find_if(bins, near);
-      if (bin == bins.end()) bin = bins.insert(bins.end(), {d, 0, 0});
-      bin->sum += errors.segment<3>(row).squaredNorm();
-      bin->count += 3;
-      row += 3;
+Combined combined(const BodyTake& take, const Gap& gap, const Prediction& prediction,
+                  const FillRule& rule) {
+  const Index skipped = edge_count(gap);
+  const Index count = static_cast<Index>(prediction.frames.size()) - skipped;
+  Combined found{Matrix::Zero(count, 3), Eigen::VectorXd(count)};
+  std::vector<Matrix> each;
+  Matrix all_missed = Matrix::Zero(skipped, 3);
+  for (std::size_t k = 0; k < rule.shares.size(); ++k) {
+    const Matrix miss = misses(take, gap, prediction, k);
+    each.push_back(bridged(gap, prediction, k, miss, rule.shares[k].reach));
+    if (rule.shares[k].weight <= 0) continue;  // which may be none
+    found.positions += rule.shares[k].weight * each.back();
+    all_missed += rule.shares[k].weight * miss;
+  }
+  found.missed = all_missed.squaredNorm() / static_cast<double>(all_missed.size());
+  std::vector<double> distances;
+  for (Index i = 0; i < count; ++i) {
+    distances.clear();
+    for (const Matrix& one : each) {
+      const double square = (one.row(i) - found.positions.row(i)).squaredNorm() / 3;
+      if (std::isfinite(square)) distances.push_back(square);
     }
-  std::ranges::sort(bins, {}, &Bin::depth);
-  const auto count = static_cast<double>(trials.size());
-  double last = 0;
-  for (const Bin& bin : bins) {
-    last = std::max(last, bin.sum / bin.count * (count + 2) / count);
-    rule.depths.push_back(bin.depth);
-    rule.variances.push_back(last);
+    const Index frame = prediction.frames[static_cast<std::size_t>(i + skipped)];
+    found.disagreement(i) =
+        distances.size() > 1 ? median(distances) : std::min(1., depth(gap, frame) / near_edge);
   }
+  return found;
 }
 
-double variance_at(const FillRule& rule, double depth) {
-  double d = 0, v = 0;
-  for (std::size_t k = 0; k < rule.depths.size(); ++k) {
-    if (depth <= rule.depths[k])
-      return v + (depth - d) / (rule.depths[k] - d) * (rule.variances[k] - v);
-    d = rule.depths[k];
-    v = rule.variances[k];
+void learn_variance(const BodyTake& take, std::span<const Gap> trials, const Tried& tried,
+                    FillRule& rule) {
+  std::vector<double> squares, disagreements;
+  for (std::size_t t = 0; t < trials.size(); ++t) {
+    const Combined made = combined(take, trials[t], tried.predictions[t], rule);
+    rule.most_missed = std::max(rule.most_missed, made.missed);
+    for (std::size_t i = 0; i < tried.inner[t].size(); ++i) {
+      const auto row = static_cast<Index>(i);
+      const Eigen::RowVector3d off =
+          made.positions.row(row) - take.position(tried.inner[t][i], trials[t].joint);
+      squares.push_back(off.squaredNorm() / 3);
+      disagreements.push_back(made.disagreement(row));
+    }
   }
-  return v;
+  rule.least_disagreement =
+      least_share * median(disagreements) + std::numeric_limits<double>::min();
+  for (std::size_t i = 0; i < squares.size(); ++i)
+    rule.variance_share += squares[i] / (disagreements[i] + rule.least_disagreement);
+  const auto count = static_cast<double>(trials.size());
+  rule.variance_share *= (count + 2) / count / static_cast<double>(squares.size());
 }
 
 }  // namespace
@@ -198,40 +208,24 @@ FillRule learn_fill_rule(const BodyTake& take, std::span<const Gap> trials, Inde
     tried.inner.push_back(probes(trial, probed));
     tried.predictions.push_back(predicted(trial, tried.inner.back(), predict));
   }
-  Eigen::MatrixXd errors = learn_reaches(take, trials, tried, rule);
+  const Eigen::MatrixXd errors = learn_reaches(take, trials, tried, rule);
   const Eigen::VectorXd weights = best_weights(errors.transpose() * errors);
   for (std::size_t k = 0; k < rule.shares.size(); ++k)
     rule.shares[k].weight = weights(static_cast<Index>(k));
-  for (Index k = 0; k < weights.size(); ++k)
-    if (weights(k) <= 0) errors.col(k).setZero();  // which may be none
   if (weights.sum() <= 0) return {};
-  learn_what_is_usual(take, trials, tried, rule);
-  learn_profile(trials, tried.inner, errors * weights, rule);
+  learn_variance(take, trials, tried, rule);
   return rule;
 }
 
 Matrix fill(const BodyTake& take, const Gap& gap, const Predictor& predict, const FillRule& rule) {
   Frames inner;
   for (Index i = gap.first; i < gap.last; ++i) inner.push_back(i);
-  const Prediction prediction = predicted(gap, inner, predict);
-  Matrix result = Matrix::Zero(gap.frames(), 4);
-  Matrix miss = Matrix::Zero(edge_count(gap), 3);
-  for (std::size_t k = 0; k < rule.shares.size(); ++k) {
-    const auto& [weight, reach] = rule.shares[k];
-    if (weight <= 0) continue;
-    const Matrix own = misses(take, gap, prediction, k);
-    result.leftCols(3) += weight * bridged(gap, prediction, k, own, reach);
-    miss += weight * own;
-  }
-  const double square = miss.squaredNorm() / static_cast<double>(miss.size());
-  const double unusual =
-      std::max(1., square / (rule.usual_miss + std::numeric_limits<double>::min()));
-  for (Index i = 0; i < gap.frames(); ++i) {
-    const double unlike = rule.usual_unlikeness > 0
-                              ? prediction.made.unlikeness(i + miss.rows()) / rule.usual_unlikeness
-                              : 1;
-    result(i, 3) = unusual * std::max(1., unlike) * variance_at(rule, depth(gap, gap.first + i));
-  }
+  const Combined made = combined(take, gap, predicted(gap, inner, predict), rule);
+  Matrix result(gap.frames(), 4);
+  result << made.positions,
+      (rule.variance_share * (made.disagreement.array() + rule.least_disagreement) +
+       std::max(0., made.missed - rule.most_missed))
+          .matrix();
   return result;
 }
 

@@ -43,22 +43,44 @@ Eigen::RowVectorXd LocalPostures::features_in(Index frame, const RigidMotion& mo
   return found;
 }
 
-PostureRegression::PostureRegression(const LocalPostures& postures, Index features, Index lag)
-    : postures_(&postures),
-      columns_(3 * features),
-      lag_(lag),
-      feature_mean_(postures.features().leftCols(3 * features).colwise().mean()),
+LocalPostures::Others LocalPostures::others(const Frames& frames) const {
+  Others found;
+  found.features.resize(static_cast<Index>(frames.size()), features_at_.cols());
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    found.motions.push_back(motion(frames[i]));
+    found.features.row(static_cast<Index>(i)) = features_in(frames[i], found.motions.back());
+  }
+  return found;
+}
+
+Matrix LocalPostures::carried(const Gap& gap, const Frames& frames, const Others& others) const {
+  std::vector<Eigen::RowVector3d> at_edges;
+  for (const Index edge : edges(gap))
+    at_edges.push_back(
+        others.motions[at_edges.size()].carried_back(take_->position(edge, gap.joint)));
+  Matrix found(static_cast<Index>(frames.size()), 3);
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const double late = gap.before && gap.after ? place(gap, frames[i]) : 0;
+    const Eigen::RowVector3d local = (1 - late) * at_edges.front() + late * at_edges.back();
+    found.row(static_cast<Index>(i)) = others.motions[i].carried(local);
+  }
+  return found;
+}
+
+PostureRegression::PostureRegression(const LocalPostures& postures, Index lag)
+    : lag_(lag),
+      feature_mean_(postures.features().colwise().mean()),
       mean_(postures.joint().colwise().mean()) {
   const Frames& frames = postures.frames();
-  const auto x = postures.features().leftCols(columns_);
-  x_.resize(x.rows(), columns_ + 1);
+  const Eigen::MatrixXd& x = postures.features();
+  x_.resize(x.rows(), x.cols() + 1);
   y_.resize(x.rows(), 3);
   Index rows = 0;
   for (std::size_t i = 0; i < frames.size(); ++i, ++rows) {
     const auto a = static_cast<Index>(i);
     begins_.push_back(frames[i]);
     if (lag_ == 0) {
-      x_.row(rows).head(columns_) = x.row(a) - feature_mean_;
+      x_.row(rows).tail(x.cols()) = x.row(a) - feature_mean_;
       y_.row(rows) = postures.joint().row(a) - mean_;
       continue;
     }
@@ -66,24 +88,25 @@ PostureRegression::PostureRegression(const LocalPostures& postures, Index featur
     if (later == frames.end()) break;
     const auto b = static_cast<Index>(later - frames.begin());
     const double taken = *later <= frames[i] + 2 * lag_;
-    x_.row(rows).head(columns_) = taken * (x.row(b) - x.row(a));
+    x_.row(rows).tail(x.cols()) = taken * (x.row(b) - x.row(a));
     y_.row(rows) = taken * (postures.joint().row(b) - postures.joint().row(a));
   }
   x_.conservativeResize(rows, Eigen::NoChange);
   y_.conservativeResize(rows, Eigen::NoChange);
   begins_.resize(static_cast<std::size_t>(rows));
-  gram_ = Eigen::MatrixXd::Zero(columns_ + 1, columns_ + 1);
-  cross_ = Eigen::MatrixXd::Zero(columns_ + 1, 3);
+  gram_ = Eigen::MatrixXd::Zero(x_.cols(), x_.cols());
+  cross_ = Eigen::MatrixXd::Zero(x_.cols(), 3);
   if (rows == 0) return;
-  // One more feature, a constant, takes up the means of what is left in.
-  if (lag_ == 0) constant_ = x_.leftCols(columns_).norm() / std::sqrt(static_cast<double>(rows));
-  x_.col(columns_).setConstant(constant_);
+  // The constant takes up the means of what is left in. Differences have none.
+  x_.col(0).setConstant(
+      lag_ > 0 ? 0 : x_.rightCols(x.cols()).norm() / std::sqrt(static_cast<double>(rows)));
   gram_.selfadjointView<Eigen::Lower>().rankUpdate(x_.transpose());
   cross_.noalias() = x_.transpose() * y_;
 }
 
-void PostureRegression::predict(const Gap& left_out, const Frames& frames,
-                                const std::vector<double>& ridges, Candidates& found) const {
+void PostureRegression::predict(const Gap& left_out, const LocalPostures::Others& frames,
+                                const std::vector<Ridge>& ridges,
+                                std::vector<Matrix>& found) const {
   const auto begin = std::ranges::lower_bound(begins_, left_out.first - 2 * lag_);
   const auto end = std::ranges::lower_bound(begins_, left_out.last);
   const Index first = begin - begins_.begin(), count = end - begin;
@@ -93,31 +116,20 @@ void PostureRegression::predict(const Gap& left_out, const Frames& frames,
     gram.selfadjointView<Eigen::Lower>().rankUpdate(x.transpose(), -1);
     cross.noalias() -= x.transpose() * y_.middleRows(first, count);
   }
-  const double variance =
-      gram.diagonal().head(columns_).mean() + std::numeric_limits<double>::min();
-  const auto rows = static_cast<Index>(frames.size());
-  std::vector<RigidMotion> motions;
-  Eigen::MatrixXd x(rows, columns_ + 1);
-  x.col(columns_).setConstant(constant_);
-  for (Index i = 0; i < rows; ++i) {
-    motions.push_back(postures_->motion(frames[static_cast<std::size_t>(i)]));
-    x.row(i).head(columns_) =
-        postures_->features_in(frames[static_cast<std::size_t>(i)], motions.back()).head(columns_) -
-        feature_mean_;
-  }
-  for (const double ridge : ridges) {
-    Eigen::MatrixXd regular = gram;
-    regular.diagonal().array() += ridge * variance;
-    const Eigen::LLT<Eigen::MatrixXd> cholesky(regular);
-    Matrix local = x * cholesky.solve(cross);
-    local.rowwise() += mean_;
-    for (Index i = 0; i < rows; ++i)
-      local.row(i) = motions[static_cast<std::size_t>(i)].carried(local.row(i).eval());
-    found.positions.push_back(std::move(local));
-    if (lag_ > 0 || found.unlikeness.size() > 0) continue;
-    const Eigen::MatrixXd scaled = cholesky.matrixL().solve(x.transpose());
-    found.unlikeness = scaled.colwise().squaredNorm().transpose() *
-                       (static_cast<double>(x_.rows() - count) / static_cast<double>(columns_));
+  for (const auto& [share, features] : ridges) {
+    const Index columns = 1 + std::min(3 * features, gram.cols() - 1);
+    Eigen::MatrixXd regular = gram.topLeftCorner(columns, columns);
+    regular.diagonal().array() +=
+        share * regular.diagonal().tail(columns - 1).mean() + std::numeric_limits<double>::min();
+    const Eigen::MatrixXd weights =
+        Eigen::LLT<Eigen::MatrixXd>(regular).solve(cross.topRows(columns));
+    Matrix local =
+        (frames.features.leftCols(columns - 1).rowwise() - feature_mean_.head(columns - 1)) *
+        weights.bottomRows(columns - 1);
+    const Eigen::RowVector3d constant = mean_ + (x_.rows() > 0 ? x_(0, 0) : 0) * weights.row(0);
+    for (Index i = 0; i < local.rows(); ++i)
+      local.row(i) = frames.motions[static_cast<std::size_t>(i)].carried(local.row(i) + constant);
+    found.push_back(std::move(local));
   }
 }
 

@@ -22,13 +22,21 @@ class LocalPostures {
   const Eigen::MatrixXd& features() const { return features_at_; }  ///< [frames x 3 features]
   const Eigen::MatrixXd& joint() const { return joint_at_; }        ///< [frames x 3]
 
-  /// How the neighbours have moved at a frame.
-  RigidMotion motion(Index frame) const;
+  /// Other frames, in which neighbours and features are seen.
+  struct Others {
+    std::vector<RigidMotion> motions;  ///< of the neighbours
+    Eigen::MatrixXd features;          ///< held still, [frames x 3 features]
+  };
+  Others others(const Frames& frames) const;
 
-  /// The features at a frame in which neighbours and features are seen, held still.
-  Eigen::RowVectorXd features_in(Index frame, const RigidMotion& motion) const;
+  /// Where the neighbours carry the joint of a gap from its edges, blended linearly, [frames x 3];
+  /// `others` are the frames, of which the first are the edges.
+  Matrix carried(const Gap& gap, const Frames& frames, const Others& others) const;
 
  private:
+  RigidMotion motion(Index frame) const;
+  Eigen::RowVectorXd features_in(Index frame, const RigidMotion& motion) const;
+
   const BodyTake* take_;
   Neighbours near_;
   std::vector<Index> feature_joints_;
@@ -36,35 +44,29 @@ class LocalPostures {
   Eigen::MatrixXd features_at_, joint_at_;
 };
 
-/// Positions [frames x 3] by each of several candidates.
-struct Candidates {
-  std::vector<Matrix> positions;
-  /// Mean square of the features in standard deviations along their principal directions, per
-  /// frame: about 1 in the postures of training, more where none is like it. Or empty.
-  Eigen::VectorXd unlikeness;
-};
-
 /// Predicts a joint from the posture of others: its local coordinates are a linear function of
-/// those of the features, by ridge regression. A ridge is a share of the mean variance of a
-/// feature. With a lag the function is that of differences over about so many frames: for
-/// predictions whose misses at the edges of a gap will be taken out.
+/// those of the features, by ridge regression. With a lag the function is that of differences over
+/// about so many frames: for predictions whose misses at the edges of a gap will be taken out.
 class PostureRegression {
  public:
-  /// The postures must outlive this. Only the first `features` are used.
-  PostureRegression(const LocalPostures& postures, Index features, Index lag = 0);
+  struct Ridge {
+    double share;    ///< of the mean variance of a feature
+    Index features;  ///< only the first so many are used
+  };
+
+  /// The postures must outlive this.
+  explicit PostureRegression(const LocalPostures& postures, Index lag = 0);
 
   /// Appends a candidate per ridge, trained without the frames of `left_out`.
-  void predict(const Gap& left_out, const Frames& frames, const std::vector<double>& ridges,
-               Candidates& found) const;
+  void predict(const Gap& left_out, const LocalPostures::Others& frames,
+               const std::vector<Ridge>& ridges, std::vector<Matrix>& found) const;
 
  private:
-  const LocalPostures* postures_;
-  Index columns_, lag_;
+  Index lag_;
   Frames begins_;  // of the rows, ascending; they end at most two lags later
   Eigen::RowVectorXd feature_mean_;
   Eigen::RowVector3d mean_;
-  double constant_ = 0;
-  Eigen::MatrixXd x_, y_, gram_, cross_;
+  Eigen::MatrixXd x_, y_, gram_, cross_;  // the first column of x is constant
 };
 
 }  // namespace moclean

@@ -19,6 +19,7 @@ namespace {
 
 constexpr double least_learned = 1.15, most_learned = 1.5, frames_learned = 5;  // learned_noise()
 constexpr double alone_variance = 1.2 * 1.2;  // of gaps that others do not share, over the trials'
+constexpr double least_joined = 0.25;         // of the drawn variance: both know the same samples
 constexpr double open_floor = 1.5 * 1.5;  // of samples not in use: solves end before they converge
 constexpr std::array<Index, 7> lengths = {1, 3, 7, 15, 31, 63, 127};  // of gaps tried; h = 2^index
 constexpr std::size_t fewest_trials = 16;
@@ -341,8 +342,8 @@ Matrix marginal_deviation(const MotionEstimate& estimate) {
   Matrix variance = noise_variance(estimate);
   if (!estimate.used.all()) add_open_variance(estimate, variance);
   const auto drawn = estimate.drawn_variance.array();
-  variance = drawn.isFinite().select(variance.array() * drawn / (variance.array() + drawn),
-                                     variance.array());
+  const auto joined = variance.array() * drawn / (variance.array() + drawn);
+  variance = drawn.isFinite().select(joined.max(least_joined * drawn), variance.array());
   add_doubt(estimate, variance);
   const auto floors = estimate.used.cast<double>() * (1 - open_floor) + open_floor;
   return (variance.array() + floors * estimate.floor * estimate.floor).sqrt();
