@@ -63,7 +63,7 @@ Tuning tuning_of(const Json& record, const DeviceInfo& device) {
                 .panel = choice(record, "panel"),
                 .products = parse_product_path(record.at("products").get<std::string>()),
                 .work_group = record.contains("work_group") ? choice(record, "work_group")
-                                                            : Tuning{}.work_group,
+                                                            : default_tuning(device).work_group,
                 .eigen = parse_eigen_form(record.at("eigen").get<std::string>()),
                 .batch_segments = choice(record, "batch_segments"),
                 .queues = record.contains("queues") ? choice(record, "queues")

@@ -47,6 +47,7 @@ std::vector<Candidate> variants(const Tuning& settled, const char* name,
                                 const std::vector<int>& values, int Tuning::*member) {
   std::vector<Candidate> all;
   for (const int value : values) {
+    if (value == settled.*member) continue;
     Tuning other = settled;
     other.*member = value;
     all.push_back({fmt::format("{} {}", name, value), other});
@@ -56,7 +57,7 @@ std::vector<Candidate> variants(const Tuning& settled, const char* name,
 
 std::vector<Candidate> work_groups(const Tuning& settled, bool quick) {
   if (settled.products != ProductPath::group || quick) return {};
-  return variants(settled, "work-groups of", {64, 128}, &Tuning::work_group);
+  return variants(settled, "work-groups of", {64, 128, 256}, &Tuning::work_group);
 }
 
 std::vector<Candidate> tiles(const Tuning& settled, bool quick) {
@@ -95,13 +96,7 @@ std::vector<Candidate> batches(const Tuning& settled, bool quick) {
 }
 
 std::vector<Candidate> queues(const Tuning& settled, bool quick) {
-  std::vector<Candidate> all;
-  for (const int queues : {1, 2, 3, 4}) {
-    if (queues == settled.queues) continue;
-    Tuning other = settled;
-    other.queues = queues;
-    all.push_back({fmt::format("queues {}", queues), other});
-  }
+  std::vector<Candidate> all = variants(settled, "queues", {1, 2, 3, 4}, &Tuning::queues);
   if (quick) all.resize(1);
   return all;
 }

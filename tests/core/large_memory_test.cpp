@@ -21,7 +21,8 @@ TEST(LargeAllocator, MakesVectorsOfAnySizeThatKeepTheirValues) {
 
     values.resize(2 * count + 1);
 
-    for (std::size_t i = 0; i < count; i += 1 + count / 100) EXPECT_EQ(values[i], i + 0.5) << count;
+    for (std::size_t i = 0; i < count; i += 1 + count / 100)
+      EXPECT_EQ(values[i], static_cast<double>(i) + 0.5) << count;
     EXPECT_EQ(values.back(), 0) << count;
   }
 }
