@@ -88,16 +88,20 @@ class Pipeline : public ::testing::Test {
                     test::synthetic_walk(frames, static_cast<std::uint64_t>(i + 1)));
   }
 
-  RunReport run(Backend& backend, const std::stop_token& stop = {}) {
+  Job job() {
     options_.inputs = {folder_ / "takes"};
-    Job job{.options = options_, .files = expand_folders(options_.inputs), .plan = {}};
-    job.plan = plan_outputs({.inputs = options_.inputs,
-                             .files = job.files,
-                             .output = options_.output,
-                             .outliers = options_.outliers,
-                             .report = {},
-                             .format = options_.format});
-    return run_pipeline(job, backend, stop);
+    Job found{.options = options_, .files = expand_folders(options_.inputs), .plan = {}};
+    found.plan = plan_outputs({.inputs = options_.inputs,
+                               .files = found.files,
+                               .output = options_.output,
+                               .outliers = options_.outliers,
+                               .report = {},
+                               .format = options_.format});
+    return found;
+  }
+
+  RunReport run(Backend& backend, const std::stop_token& stop = {}) {
+    return run_pipeline(job(), backend, stop);
   }
 
   // Everything in the folder that does not belong to the input.
@@ -157,30 +161,22 @@ class LargeDevice : public Pipeline {
   LargeDevice() {
     write_takes(40);
     options_.chain = {LowRank{.segmentation = {.segments = 10}}};
-    options_.inputs = {folder_ / "takes"};
-    job_.files = expand_folders(options_.inputs);
-    job_.plan = plan_outputs({.inputs = options_.inputs,
-                              .files = job_.files,
-                              .output = options_.output,
-                              .outliers = {},
-                              .report = {},
-                              .format = {}});
   }
-
-  Job job_{.options = options_, .files = {}, .plan = {}};
 };
 
 TEST_F(LargeDevice, LeavesFourGroupsToOverlap) {
-  job_.compute_units = 1000;
+  Job large = job();
+  large.compute_units = 1000;
 
-  EXPECT_EQ(run_pipeline(job_, backend_).groups, 4);
+  EXPECT_EQ(run_pipeline(large, backend_).groups, 4);
 }
 
 TEST_F(LargeDevice, IsFilledFirstWhereItIsAGpu) {
-  job_.on_gpu = true;
-  job_.compute_units = 20;  // 160 segments, 16 takes
+  Job large = job();
+  large.on_gpu = true;
+  large.compute_units = 20;  // 160 segments, 16 takes
 
-  EXPECT_EQ(run_pipeline(job_, backend_).groups, 3);
+  EXPECT_EQ(run_pipeline(large, backend_).groups, 3);
 }
 
 TEST_F(Pipeline, NoGroupIsLargerThanItsShareOfTheMemory) {

@@ -14,7 +14,7 @@ namespace moclean {
 namespace {
 
 constexpr std::array<double, 4> reaches = {0.05, 0.2, 0.7, 20};
-constexpr double least_share = 0.1;  // of the usual disagreement
+constexpr double chance_share = 0.1;  // of the usual disagreement
 constexpr double near_edge = 0.2;    // depth up to which a single candidate is surer
 constexpr double shrinkage = 0.05;   // of the errors' covariance to its diagonal
 
@@ -190,7 +190,7 @@ void learn_variance(const BodyTake& take, std::span<const Gap> trials, const Tri
     }
   }
   rule.least_disagreement =
-      least_share * median(disagreements) + std::numeric_limits<double>::min();
+      chance_share * median(disagreements) + std::numeric_limits<double>::min();
   for (std::size_t i = 0; i < squares.size(); ++i)
     rule.variance_share += squares[i] / (disagreements[i] + rule.least_disagreement);
   const auto count = static_cast<double>(trials.size());
