@@ -23,7 +23,8 @@ namespace {
 constexpr int host_bound_queues = 4;
 
 int queues_of(const Tuning& tuning, const DeviceInfo& device, const Method& method) {
-  const bool waits = device.kind == DeviceKind::gpu && std::holds_alternative<MatrixNormal>(method);
+  const bool many = device.kind == DeviceKind::gpu && device.compute_units >= host_bound_queues;
+  const bool waits = many && std::holds_alternative<MatrixNormal>(method);
   return waits ? std::max(tuning.queues, host_bound_queues) : tuning.queues;
 }
 
