@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::array<double, 4> reaches = {0.05, 0.2, 0.7, 20};
 constexpr double chance_share = 0.1;  // of the usual disagreement
-constexpr double near_edge = 0.2;    // depth up to which a single candidate is surer
-constexpr double shrinkage = 0.05;   // of the errors' covariance to its diagonal
+constexpr double near_edge = 0.2;     // depth up to which a single candidate is surer
+constexpr double shrinkage = 0.05;    // of the errors' covariance to its diagonal
 
 struct Prediction {
   Frames frames;  // the edges come first
