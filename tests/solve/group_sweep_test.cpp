@@ -4,16 +4,20 @@
 #include <gtest/gtest.h>
 
 #include "moclean/device/kernel_source.hpp"
+#include "moclean/linalg/work_group.hpp"
 #include "moclean/solve/opencl/robust_pca.hpp"
 
 #include "support/device.hpp"
 #include "support/matrix.hpp"
+#include "support/stacked.hpp"
 #include "support/tolerance.hpp"
 
 namespace moclean {
 namespace {
 
 using opencl::SegmentState;
+using test::download;
+using test::upload;
 
 double soft(double t, double limit) { return t - std::clamp(t, -limit, limit); }
 
@@ -27,7 +31,8 @@ class GroupSweepTest : public testing::TestWithParam<std::tuple<int, bool>> {
         A_(matrix(3)),
         X_(matrix(4)),
         batch_(test::device(), D_, 0, 2),
-        program_(test::device(), kernel_source::sweep_group, defines()) {
+        program_(test::device(), kernel_source::sweep_group,
+                 group_defines(test::device(), work_group())) {
     for (Index b = 0; b < 2; ++b)
       states_.push_back({.mu = 0.7,
                          .mu_next = 1.05,
@@ -42,25 +47,12 @@ class GroupSweepTest : public testing::TestWithParam<std::tuple<int, bool>> {
     return test::batch_of(
         {test::random_matrix(301, 5, seed), test::random_matrix(7, 5, seed + 100)});
   }
-  static Defines defines() {
-    Defines defines = common_defines(test::device());
-    defines["WG"] = std::to_string(std::get<0>(GetParam()));
-    return defines;
-  }
-  static Buffer<double> upload(const SegmentBatch& rows) {
-    return Buffer<double>(test::device(), rows.storage());
-  }
-  static SegmentBatch download(const Buffer<double>& buffer, const SegmentBatch& like) {
-    SegmentBatch rows(like.columns(), like.first_rows());
-    buffer.read(rows.storage());
-    return rows;
-  }
+  static int work_group() { return std::get<0>(GetParam()); }
   template <class... Arguments>
   void launch(const std::string& name, const Arguments&... arguments) {
-    const auto width = static_cast<std::size_t>(std::get<0>(GetParam()));
     Kernel kernel(program_, name);
-    kernel({.x = width * static_cast<std::size_t>(batch_.active_blocks()), .group_x = width},
-           batch_.device_segments(), batch_.device_blocks(), batch_.active_blocks(),
+    kernel(group_per_block(batch_, work_group()), batch_.device_segments(), batch_.device_blocks(),
+           batch_.active_blocks(),
            Buffer<SegmentState>(test::device(), std::span<const SegmentState>(states_)),
            arguments...);
   }

@@ -8,10 +8,14 @@
 
 #include "support/device.hpp"
 #include "support/matrix.hpp"
+#include "support/stacked.hpp"
 #include "support/tolerance.hpp"
 
 namespace moclean {
 namespace {
+
+using test::download;
+using test::upload;
 
 // What kernels/temporal_group.cl makes of two segments of 301 and 7 rows with 5 columns; mu was 0.5
 // and 0.8, will be 0.75 and 1.2.
@@ -32,14 +36,6 @@ class GroupTemporalTest : public testing::TestWithParam<int> {
       for (Index i = 0; i < observed.rows(b); ++i)
         for (Index j = 0; j < 5; ++j) observed.segment(b)(i, j) = (i + j) % 3 > 0;
     return observed;
-  }
-  static Buffer<double> upload(const SegmentBatch& rows) {
-    return Buffer<double>(test::device(), rows.storage());
-  }
-  static SegmentBatch download(const Buffer<double>& buffer, const SegmentBatch& like) {
-    SegmentBatch rows(like.columns(), like.first_rows());
-    buffer.read(rows.storage());
-    return rows;
   }
 
   Updated run(int work_group) const {
