@@ -37,7 +37,9 @@ void check(const MatrixNormal& method) {
   require(method.soft_last > 0, "soft-last", method.soft_last, "a positive number");
   require(method.hard > 0, "hard", method.hard, "a positive number");
   require_count("solve-iterations", method.solve_iterations);
-  require(method.solve_tolerance >= 0, "solve-tolerance", method.solve_tolerance,
+  require(method.soft_tolerance >= 0, "soft-tolerance", method.soft_tolerance,
+          "a number of at least 0");
+  require(method.hard_tolerance >= 0, "hard-tolerance", method.hard_tolerance,
           "a number of at least 0");
 }
 

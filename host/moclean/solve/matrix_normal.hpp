@@ -53,8 +53,12 @@ struct MatrixNormal {
   double soft_last = 4;       ///< and of the last
   double hard = 6;            ///< samples farther than this are rejected, predictive deviations
   int solve_iterations = 10;  ///< most conjugate gradient iterations of a step, at least 1
-  double solve_tolerance = 1e-6;  ///< of a step: on the residual, relative to that of S = 0
+  double soft_tolerance = 1e-5;   ///< of a soft step: on the residual, relative to that of S = 0
+  double hard_tolerance = 1e-6;   ///< of a hard one
   std::vector<JointKnowledge> knowledge = {};  ///< per segment; empty: none of any
+
+  /// Of the conjugate gradients of a step; the first guess is smoothed before step 0 as in it.
+  double tolerance(int step) const { return step < soft_steps ? soft_tolerance : hard_tolerance; }
 
   bool operator==(const MatrixNormal&) const = default;
 
@@ -69,7 +73,8 @@ struct MatrixNormal {
     visitor("soft-last", self.soft_last);
     visitor("hard", self.hard);
     visitor("solve-iterations", self.solve_iterations);
-    visitor("solve-tolerance", self.solve_tolerance);
+    visitor("soft-tolerance", self.soft_tolerance);
+    visitor("hard-tolerance", self.hard_tolerance);
   }
 };
 

@@ -33,6 +33,7 @@ struct MatrixNormalSolver::Run {
       const MatrixNormal& method, int threads)
       : jobs(threads),
         host(extended_shape(data, first, last)),
+        motion(host.columns(), host.first_rows()),
         batch(device, host, 0, last - first),
         gradients(device, batch),
         Q(device, batch.square_size()),
@@ -115,7 +116,8 @@ struct MatrixNormalSolver::Run {
   }
 
   int jobs;
-  SegmentBatch host;  // stacked matrices on their way
+  SegmentBatch host;    // stacked matrices on their way
+  SegmentBatch motion;  // S of the step before
   Batch batch;
   ConjugateGradients::Memory gradients;
   Buffer<double> Q, Z, eigenvalues, f;
@@ -141,7 +143,7 @@ std::uint64_t MatrixNormalSolver::memory_of(Index rows, Index columns, const Mat
          static_cast<std::uint64_t>(blocks) * sizeof(BlockRecord);
 }
 
-// A to run.gradients.product: accelerations of the motion in run.host, grown where noise matters.
+// A to run.gradients.product: accelerations of run.motion, grown where noise matters.
 // Windows that need no growth are left out of it: they do not depend on others, bit for bit.
 void MatrixNormalSolver::accelerate(Run& run) {
   std::vector<double> weights(run.batch.vector_size(), 0);
@@ -151,7 +153,7 @@ void MatrixNormalSolver::accelerate(Run& run) {
       run.vector_of(weights, b) = *growth;
       growing.push_back(b);
     }
-  run.upload([&](std::int32_t b) { return run.window(b).accelerations(run.host.segment(b)); },
+  run.upload([&](std::int32_t b) { return run.window(b).accelerations(run.motion.segment(b)); },
              run.gradients.product);
   if (growing.empty()) return;
   run.gradients.r.write(run.host.storage());
@@ -171,7 +173,7 @@ void MatrixNormalSolver::add_prior(Run& run) {
   run.Q.write(Q);
 }
 
-// Q and R from the motion in run.host.
+// Q and R from run.motion.
 void MatrixNormalSolver::learn(Run& run) {
   accelerate(run);
   products_.gram(run.batch, run.gradients.product, run.Q);
@@ -188,8 +190,8 @@ void MatrixNormalSolver::learn(Run& run) {
 }
 
 // S = argmin sum W (D - S)^2 + tr(P Delta S R (Delta S)') from S on, by conjugate gradients.
-void MatrixNormalSolver::smooth(Run& run, const MatrixNormal& method) {
-  gradients_(run.batch, run.gradients, products_, method.solve_iterations, method.solve_tolerance);
+void MatrixNormalSolver::smooth(Run& run, const MatrixNormal& method, int step) {
+  gradients_(run.batch, run.gradients, products_, method.solve_iterations, method.tolerance(step));
 }
 
 // S from the first guess, smoothed with a diagonal R.
@@ -213,7 +215,7 @@ void MatrixNormalSolver::first_smoothing(Run& run, const MatrixNormal& method) {
         return Matrix::Ones(run.window(b).rows(), run.window(b).columns()).eval();
       },
       run.gradients.W);
-  smooth(run, method);
+  smooth(run, method, 0);
 }
 
 // Weights and targets from the residuals, on the host.
@@ -221,10 +223,9 @@ void MatrixNormalSolver::weigh(Run& run) {
   std::vector<double> R(run.batch.square_size());
   run.gradients.R.read(R);
   std::vector<Eigen::VectorXd> diagonals(run.windows());
-  run.gradients.S.read(run.host.storage());
   run.for_each_active([&](std::int32_t b) {
     diagonals[static_cast<std::size_t>(b)] = run.diagonal_of(R, b);
-    run.window(b).weigh(run.host.segment(b), run.square_of(R, b));
+    run.window(b).weigh(run.motion.segment(b), run.square_of(R, b));
   });
   run.set_stiffness([&](std::int32_t b) { return diagonals[static_cast<std::size_t>(b)]; });
   run.set_precisions();
@@ -245,7 +246,7 @@ void MatrixNormalSolver::solve(const SegmentBatch& data, Index first, Index last
         std::vector<std::int32_t>(run.windows(), static_cast<std::int32_t>(data.columns())));
     first_smoothing(run, method);
     run.gradients.iterations.fill_zero();
-    run.gradients.S.read(run.host.storage());
+    run.gradients.S.read(run.motion.storage());
   }
   const int steps = method.soft_steps + method.hard_steps;
   for (int step = 0; step < steps && run.batch.active_count() > 0; ++step) {
@@ -255,9 +256,10 @@ void MatrixNormalSolver::solve(const SegmentBatch& data, Index first, Index last
     }
     learn(run);
     weigh(run);
-    smooth(run, method);
-    run.gradients.S.read(run.host.storage());  // for the noise, and for the next step to learn from
-    run.for_each_active([&](std::int32_t b) { run.window(b).estimate_noise(run.host.segment(b)); });
+    smooth(run, method, step);
+    run.gradients.S.read(run.motion.storage());  // for the noise, and for the next step to learn from
+    run.for_each_active(
+        [&](std::int32_t b) { run.window(b).estimate_noise(run.motion.segment(b)); });
   }
   if (run.batch.active_count() > 0) eigen_.check(run.batch);
   finish(run, first, solution);
@@ -273,7 +275,7 @@ void MatrixNormalSolver::finish(Run& run, Index first, Solution& solution) {
     const Index b = first + i;
     const auto place = static_cast<std::int32_t>(i);
     const MatrixNormalWindow& window = run.window(place);
-    const auto own = run.host.segment(i);
+    const auto own = run.motion.segment(i);
     solution.low_rank.segment(b) = window.trivial() ? window.filled() : window.cleaned(own);
     solution.trusted->segment(b) = window.trusted().cast<double>();
     solution.deviation->segment(b) = window.deviation(own, run.square_of(Z, place));

@@ -37,7 +37,7 @@ class MatrixNormalSolver {
   void add_prior(Run& run);
   void learn(Run& run);
   void weigh(Run& run);
-  void smooth(Run& run, const MatrixNormal& method);
+  void smooth(Run& run, const MatrixNormal& method, int step);
   void finish(Run& run, Index first, Solution& solution);
 
   const Device& device_;

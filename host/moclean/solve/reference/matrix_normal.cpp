@@ -125,7 +125,7 @@ MatrixNormalSolution solve(const ConstMatrixRef& data, const MatrixNormal& metho
     const auto guess = window.first_guess();
     S = guess.motion;
     smooth(guess.motion, ones, window.precision(), guess.stiffness.asDiagonal().toDenseMatrix(),
-           method.solve_iterations, method.solve_tolerance, S);
+           method.solve_iterations, method.tolerance(0), S);
     for (int step = 0; step < window.steps(); ++step) {
       if (stop.stop_requested()) throw Cancelled();
       Matrix A = window.accelerations(S);
@@ -136,7 +136,7 @@ MatrixNormalSolution solve(const ConstMatrixRef& data, const MatrixNormal& metho
       const Matrix R = Q.weighted(window.inverse_spectrum(Q.values));
       window.weigh(S, R);
       solution.outcome.iterations += smooth(window.target(), window.weights(), window.precision(),
-                                            R, method.solve_iterations, method.solve_tolerance, S);
+                                            R, method.solve_iterations, method.tolerance(step), S);
       window.estimate_noise(S);
     }
   }
