@@ -55,5 +55,34 @@ TEST(BandMatrix, SolvesWithASmallBackwardErrorHoweverIllConditioned) {
       }
 }
 
+TEST(BandMatrix, HasTheInverseOfAPaperCalculationInItsBand) {
+  // (2 -1 0; -1 2 -1; 0 -1 2)^-1 = (3 2 1; 2 4 2; 1 2 3) / 4, of which the band leaves out the 1
+  BandMatrix a{.width = 1, .rows = {{2, 0, 0, 0}, {2, -1, 0, 0}, {2, -1, 0, 0}}};
+  const BandMatrix original = a;
+
+  factor(a);
+  const BandMatrix inverse = inverse_in_band(a);
+
+  const double expected[][2] = {{0.75, 0}, {1, 0.5}, {0.75, 0.5}};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t k = 0; k < 2; ++k)
+      EXPECT_NEAR(inverse.rows[i][k], expected[i][k], test::tolerance::by_hand(1)) << i << k;
+  EXPECT_NEAR(trace_of_product(inverse, original), 3, test::tolerance::by_hand(3));  // of I
+}
+
+TEST(BandMatrix, InverseTimesItselfHasTheTraceOfTheIdentity) {
+  for (int width = 1; width <= BandMatrix::most_width; ++width)
+    for (const std::size_t rows : {1, 2, 3, 4, 5, 60}) {
+      BandMatrix a = difference_penalty(rows, width, 10);
+      for (auto& row : a.rows) row[0] += 1;
+      const BandMatrix original = a;
+
+      factor(a);
+
+      EXPECT_NEAR(trace_of_product(inverse_in_band(a), original), static_cast<double>(rows), 1e-9)
+          << width << ", " << rows;
+    }
+}
+
 }  // namespace
 }  // namespace moclean

@@ -18,8 +18,9 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // One of each kind.
 std::vector<Filter> every_filter() {
-  return {MovingAverage{}, GaussianFilter{}, MedianFilter{},    Hampel{},         Butterworth{},
-          SavitzkyGolay{}, Whittaker{},      RobustWhittaker{}, KalmanSmoother{}, Interpolate{}};
+  return {MovingAverage{}, GaussianFilter{}, MedianFilter{}, Hampel{},
+          Butterworth{},   SavitzkyGolay{},  Whittaker{},    RobustWhittaker{},
+          GcvSpline{},     KalmanSmoother{}, Interpolate{}};
 }
 
 // What a filter does not know: gaps, or the column without a sample.

@@ -49,4 +49,36 @@ void solve(const BandMatrix& factor, std::span<double> x) {
   }
 }
 
+// Z = (L D L')^-1 solves Z = D^-1 L^-1 + (I - L') Z, of which the first term has no entries above
+// the diagonal: from the last row on, each entry of the band follows from those after it.
+BandMatrix inverse_in_band(const BandMatrix& factor) {
+  const auto width = static_cast<std::size_t>(factor.width);
+  const auto& r = factor.rows;
+  const std::size_t n = r.size();
+  BandMatrix inverse{.width = factor.width, .rows = {}};
+  inverse.rows.resize(n, {0, 0, 0, 0});
+  const auto entry = [&](std::size_t i, std::size_t j) -> double& {
+    return inverse.rows[std::max(i, j)][std::max(i, j) - std::min(i, j)];
+  };
+  for (std::size_t i = n; i-- > 0;) {
+    const std::size_t last = std::min(n - 1, i + width);
+    for (std::size_t j = last + 1; j-- > i;) {
+      double sum = j == i ? 1 / r[i][0] : 0;
+      for (std::size_t k = i + 1; k <= last; ++k) sum -= r[k][k - i] * entry(k, j);
+      entry(i, j) = sum;
+    }
+  }
+  return inverse;
+}
+
+double trace_of_product(const BandMatrix& a, const BandMatrix& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    sum += a.rows[i][0] * b.rows[i][0];
+    for (std::size_t k = 1; k <= static_cast<std::size_t>(a.width); ++k)
+      sum += 2 * a.rows[i][k] * b.rows[i][k];
+  }
+  return sum;
+}
+
 }  // namespace moclean

@@ -30,4 +30,10 @@ void factor(BandMatrix& a);
 /// Solves L D L' x = b in place; x.size() is that of the matrix.
 void solve(const BandMatrix& factor, std::span<double> x);
 
+/// The entries of (L D L')^-1 within the band (Takahashi, Fagan, Chen 1973).
+BandMatrix inverse_in_band(const BandMatrix& factor);
+
+/// tr(A B) of two matrices of one size and width.
+double trace_of_product(const BandMatrix& a, const BandMatrix& b);
+
 }  // namespace moclean

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "moclean/filter/butterworth.hpp"
+#include "moclean/filter/gcv_spline.hpp"
 #include "moclean/filter/interpolate.hpp"
 #include "moclean/filter/kalman.hpp"
 #include "moclean/filter/savitzky_golay.hpp"
@@ -17,8 +18,9 @@ namespace moclean {
 
 /// Every filter there is. Each works on one channel at a time; what it does at the ends of a take
 /// and beside gaps stands in its own comment. A sample that is NaN stays NaN unless fills_gaps().
-using Filter = std::variant<MovingAverage, GaussianFilter, MedianFilter, Hampel, Butterworth,
-                            SavitzkyGolay, Whittaker, RobustWhittaker, KalmanSmoother, Interpolate>;
+using Filter =
+    std::variant<MovingAverage, GaussianFilter, MedianFilter, Hampel, Butterworth, SavitzkyGolay,
+                 Whittaker, RobustWhittaker, GcvSpline, KalmanSmoother, Interpolate>;
 
 /// Whether a filter's parameters are in Hz or per second.
 template <class F>
