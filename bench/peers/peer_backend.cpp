@@ -33,8 +33,9 @@ PeerBackend::PeerBackend(std::string name, int threads, const MakeSolver& make_s
   for (int t = 0; t < threads; ++t) solvers_.push_back(make_solver());
 }
 
-Solution PeerBackend::solve(const SegmentBatch& data, const Method& method, const Monitor&) {
+Solution PeerBackend::solve(const Problem& problem, const Method& method, const Monitor&) {
   const auto& robust_pca = std::get<RobustPca>(method);
+  const SegmentBatch& data = problem.data;
   check(robust_pca);
   require_finite(data);
   if (robust_pca.order != UpdateOrder::ae)

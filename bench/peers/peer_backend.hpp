@@ -22,7 +22,7 @@ class PeerBackend final : public Backend {
   std::string name() const override { return name_; }
 
   /// See Backend; the monitor is not asked. Throws ArgumentError for the order ea.
-  Solution solve(const SegmentBatch& data, const Method& method,
+  Solution solve(const Problem& problem, const Method& method,
                  const Monitor& monitor = {}) override;
 
  private:

@@ -114,7 +114,7 @@ TEST(RigidFlags, BlameTheJointThatIsDisplacedAndNoOther) {
   EXPECT_EQ(flags.bad.count(), flags.bad.col(4).count());
   EXPECT_TRUE(flags.bad.col(4).segment(100, 30).all());
   EXPECT_LE(flags.bad.col(4).count(), 34);  // holes are closed over a few frames at the ends
-  EXPECT_FALSE((flags.bad && flags.vouched).any());
+  EXPECT_FALSE((flags.bad && flags.confirmed).any());
 }
 
 TEST(RigidFlags, HoldForAnyUnitOfLength) {
@@ -122,7 +122,7 @@ TEST(RigidFlags, HoldForAnyUnitOfLength) {
   const Learned metres(samples), millimetres(1000 * samples);
 
   EXPECT_TRUE((metres.flags().bad == millimetres.flags().bad).all());
-  EXPECT_TRUE((metres.flags().vouched == millimetres.flags().vouched).all());
+  EXPECT_TRUE((metres.flags().confirmed == millimetres.flags().confirmed).all());
 }
 
 // Joints 1, 3 and 7 lie nearly on a line but for a third of the time, when the limb bends at joint
@@ -157,7 +157,7 @@ TEST(RigidFlags, LetAJointTurnAboutAnother) {
   const RigidFlags flags = Learned(samples).flags();
 
   EXPECT_FALSE(flags.bad.any());
-  EXPECT_TRUE(flags.vouched.col(11).segment(200, 40).all());
+  EXPECT_TRUE(flags.confirmed.col(11).segment(200, 40).all());
 }
 
 TEST(RigidFlags, FindAThumbThatIsNotWhereItsBoneIs) {
@@ -231,8 +231,8 @@ TEST(RigidFlags, VouchForAJointWhoseBonesHoldHoweverItMoves) {
   samples.row(200).segment<3>(24) = 2 * pivot - samples.row(200).segment<3>(24);
   const RigidFlags flags = Learned(samples).flags();
 
-  EXPECT_TRUE(flags.vouched(200, 8));
-  EXPECT_TRUE(flags.vouched.all());
+  EXPECT_TRUE(flags.confirmed(200, 8));
+  EXPECT_TRUE(flags.confirmed.all());
 }
 
 TEST(RigidFlags, VouchForNobodyInAFrameThatIsMostlyWrong) {
@@ -244,7 +244,7 @@ TEST(RigidFlags, VouchForNobodyInAFrameThatIsMostlyWrong) {
   samples.row(200).segment<3>(21).x() += 1.7;  // joint 7 hangs on joint 3 by 1 + 0.1 * 7
   const RigidFlags flags = Learned(samples).flags();
 
-  EXPECT_FALSE(flags.vouched.row(200).any());
+  EXPECT_FALSE(flags.confirmed.row(200).any());
 }
 
 TEST(RigidFlags, NeedAJumpWhereNoDistanceIsExact) {
@@ -269,7 +269,7 @@ TEST(RigidFlags, SayNothingOfMissingJoints) {
   const Learned learned(samples);
 
   EXPECT_FALSE(learned.flags().bad.any());
-  EXPECT_FALSE(learned.flags().vouched.col(3).segment(50, 40).any());
+  EXPECT_FALSE(learned.flags().confirmed.col(3).segment(50, 40).any());
 }
 
 TEST(JumpFlags, FindALimbThatLeavesAsAWholeAndComesBack) {

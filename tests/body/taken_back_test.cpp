@@ -31,7 +31,7 @@ TEST(TakeBackTurning, KeepsAThumbThatFlipsThoughNoiseHidesItsBone) {
   const RigidFlags flags = flags_in_noise(samples);
 
   EXPECT_FALSE(flags.bad.any());
-  EXPECT_TRUE(flags.vouched.col(11).segment(205, 30).all());
+  EXPECT_TRUE(flags.confirmed.col(11).segment(205, 30).all());
 }
 
 TEST(TakeBackTurning, KeepsNothingWhereNeighbouringFramesShareTheirNoise) {

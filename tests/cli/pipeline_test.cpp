@@ -35,7 +35,8 @@ class ThreeQuarters final : public Backend {
  public:
   std::string name() const override { return "three quarters"; }
 
-  Solution solve(const SegmentBatch& data, const Method&, const Monitor& monitor) override {
+  Solution solve(const Problem& problem, const Method&, const Monitor& monitor) override {
+    const SegmentBatch& data = problem.data;
     calls.push_back(data.rows() * data.columns() * Index{sizeof(double)});
     before_solving(calls.size());
     if (monitor.stop.stop_requested()) throw Cancelled();
@@ -56,8 +57,8 @@ class WrongOnce final : public Backend {
   explicit WrongOnce(int wrong_call) : wrong_call_(wrong_call) {}
   std::string name() const override { return "wrong once"; }
 
-  Solution solve(const SegmentBatch& data, const Method& method, const Monitor& monitor) override {
-    Solution solution = reference_.solve(data, method, monitor);
+  Solution solve(const Problem& problem, const Method& method, const Monitor& monitor) override {
+    Solution solution = reference_.solve(problem, method, monitor);
     if (++calls_ == wrong_call_) solution.low_rank.segment(0)(0, 0) += 1;
     return solution;
   }

@@ -29,7 +29,7 @@ MotionEstimate estimate_of(Index frames, Index columns, std::uint64_t seed) {
   return {.motion = model.motion,
           .used = Mask::Constant(frames, columns, true),
           .rejected = Matrix::Zero(frames, columns),
-          .drawn_variance = Matrix::Constant(frames, columns, infinite),
+          .prior_variance = Matrix::Constant(frames, columns, infinite),
           .eigenvectors = model.eigenvectors,
           .spectrum = model.spectrum,
           .precision = Eigen::VectorXd::Ones(frames - 2),
@@ -145,9 +145,20 @@ TEST(MarginalDeviation, JoinsWhatElseIsKnownByPrecision) {
   e.used.block(100, 3, 40, 3).setConstant(false);
   e.floor = 1e-9;
   const double own = marginal_deviation(e)(120, 4);
-  e.drawn_variance(120, 4) = own * own;
+  e.prior_variance(120, 4) = own * own;
 
   EXPECT_NEAR(marginal_deviation(e)(120, 4), own / std::sqrt(2.), 1e-6 * own);
+}
+
+TEST(MarginalDeviation, IsNotCarriedAwayByAPriorThatKnowsNothing) {
+  MotionEstimate e = estimate_of(300, 9, 1);
+  e.used.block(100, 3, 40, 3).setConstant(false);
+  e.floor = 1e-9;
+  const double own = marginal_deviation(e)(120, 4);
+  e.prior_variance(120, 4) = 1e12 * own * own;
+
+  EXPECT_LE(marginal_deviation(e)(120, 4), 3.001 * own);
+  EXPECT_GE(marginal_deviation(e)(120, 4), own);
 }
 
 TEST(MarginalDeviation, DoubtsRejectionsThatTheTailOfTheModelExplains) {

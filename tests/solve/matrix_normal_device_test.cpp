@@ -1,5 +1,7 @@
 // Matrix-normal smoothing on every backend: what it promises, and the device against the reference.
 #include <limits>
+#include <span>
+#include <vector>
 
 #include <gmock/gmock.h>
 
@@ -44,21 +46,21 @@ SegmentBatch batch_of(const std::vector<Index>& lengths, Index columns) {
   return test::batch_of(segments);
 }
 
-// Links that hold nowhere in particular, doubtful vouching, gaps drawn to one place: all branches,
-// no sense.
-MatrixNormal with_knowledge(const SegmentBatch& data) {
-  MatrixNormal method;
+// Links that hold nowhere in particular, doubtful confirmations, gaps expected at one place: all
+// branches, no sense.
+std::vector<MotionPrior> priors_of(const SegmentBatch& data) {
+  std::vector<MotionPrior> priors;
   for (Index b = 0; b < data.segments(); ++b) {
     const Index joints = data.columns() / 3;
-    JointKnowledge known{
-        .size = 10, .noise = 0.05, .vouched = Mask::Constant(data.rows(b), joints, true)};
+    MotionPrior known{
+        .size = 10, .noise = 0.05, .confirmed = Mask::Constant(data.rows(b), joints, true)};
     for (Index j = 1; j < joints; ++j) known.links.push_back({j - 1, j, 5, true, j % 2 == 0});
-    known.drawn = Matrix::Constant(data.rows(b), data.columns(), 2);
+    known.positions = Matrix::Constant(data.rows(b), data.columns(), 2);
     known.variance = Matrix::Constant(data.rows(b), joints, 0.5);
     known.variance.topRows(data.rows(b) / 2).setConstant(std::numeric_limits<double>::infinity());
-    method.knowledge.push_back(known);
+    priors.push_back(known);
   }
-  return method;
+  return priors;
 }
 
 // A joint missing for one frame or 15, here and there.
@@ -99,18 +101,26 @@ class MatrixNormalContract : public testing::TestWithParam<BackendKind> {
 
 TEST_P(MatrixNormalContract, ResultsDoNotDependOnPackingOrNeighbours) {
   const SegmentBatch data = batch_of({50, 2, 12, 90}, 21);
-  const MatrixNormal method = with_knowledge(data);
-  const Solution together = backend_->solve(data, method);
+  const std::vector<MotionPrior> priors = priors_of(data);
+  const Solution together = backend_->solve({data, priors}, MatrixNormal{});
 
   for (Index b = 0; b < data.segments(); ++b) {
-    MatrixNormal own = method;
-    own.knowledge = {method.knowledge[static_cast<std::size_t>(b)]};
-    const Solution alone = backend_->solve(test::batch_of({Matrix(data.segment(b))}), own);
+    const SegmentBatch own = test::batch_of({Matrix(data.segment(b))});
+    const std::span prior(&priors[static_cast<std::size_t>(b)], 1);
+    const Solution alone = backend_->solve({own, prior}, MatrixNormal{});
     EXPECT_TRUE(
         test::same_bits(Matrix(together.low_rank.segment(b)), Matrix(alone.low_rank.segment(0))));
     EXPECT_TRUE(test::same_bits(Matrix(together.deviation->segment(b)),
                                 Matrix(alone.deviation->segment(0))));
   }
+}
+
+TEST_P(MatrixNormalContract, RefusesPriorsThatAreNotOnePerSegmentOrThatAMethodDoesNotTake) {
+  const SegmentBatch data = batch_of({50, 60}, 9);
+  const std::vector<MotionPrior> priors = priors_of(data);
+
+  EXPECT_THROW(backend_->solve({data, std::span(priors).first(1)}, MatrixNormal{}), ArgumentError);
+  EXPECT_THROW(backend_->solve({data, priors}, TruncatedSvd{}), ArgumentError);
 }
 
 TEST_P(MatrixNormalContract, TellsWhatItRejected) {
@@ -184,10 +194,12 @@ TEST_P(MatrixNormalAgreement, OfDeviceAndReference) {
   const auto& [kind, shape] = GetParam();
   const auto [rows, columns] = shape;
   const SegmentBatch data = batch_of({rows, rows + 1}, columns);
-  const MatrixNormal method = columns % 3 == 0 ? with_knowledge(data) : MatrixNormal{};
+  const std::vector<MotionPrior> priors =
+      columns % 3 == 0 ? priors_of(data) : std::vector<MotionPrior>{};
+  const Problem problem(data, priors);
 
-  const Solution device = test::make_backend(kind)->solve(data, method);
-  const Solution reference = ReferenceBackend(2).solve(data, method);
+  const Solution device = test::make_backend(kind)->solve(problem, MatrixNormal{});
+  const Solution reference = ReferenceBackend(2).solve(problem, MatrixNormal{});
 
   for (Index b = 0; b < data.segments(); ++b) {
     SCOPED_TRACE("segment " + std::to_string(b));

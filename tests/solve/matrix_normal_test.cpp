@@ -164,11 +164,10 @@ TEST(MatrixNormal, TakesKnownNoiseAwayThatNeighbouringFramesShare) {
   const Matrix truth = walk(600, 30);
   const Matrix noisy = truth + 0.3 * test::correlated_noise(600, 30, 0.9);
   const MatrixNormal unknown{.joint_columns = 1};  // the walk's joints do not move as bodies do
-  MatrixNormal known = unknown;
-  known.knowledge = {{.noise = 0.3 * std::sqrt(1.9 / 0.1)}};
+  const MotionPrior known{.noise = 0.3 * std::sqrt(1.9 / 0.1)};
 
   const double plain = rms(reference::solve(noisy, unknown).low_rank - truth);
-  const double informed = rms(reference::solve(noisy, known).low_rank - truth);
+  const double informed = rms(reference::solve(noisy, unknown, {}, known).low_rank - truth);
 
   EXPECT_GE(plain, 0.9 * rms(noisy - truth));  // it looks like motion
   EXPECT_LE(informed, 0.8 * plain);
@@ -201,10 +200,10 @@ TEST(MatrixNormal, DrawsMissingSamplesToWhereTheyShouldBe) {
   data.block(100, 3, 90, 3).setConstant(nan);
   Matrix variance = Matrix::Constant(300, 4, std::numeric_limits<double>::infinity());
   variance.col(1).segment(100, 90).setConstant(1e-6);
-  MatrixNormal method;
-  method.knowledge = {{.size = 10, .drawn = motion, .variance = variance}};
+  const MotionPrior prior{.size = 10, .positions = motion, .variance = variance};
 
-  const auto blind = reference::solve(data, MatrixNormal{}), drawn = reference::solve(data, method);
+  const auto blind = reference::solve(data, MatrixNormal{});
+  const auto drawn = reference::solve(data, MatrixNormal{}, {}, prior);
 
   const auto off = [&](const auto& result) {
     return rms((result.low_rank - motion).block(100, 3, 90, 3));

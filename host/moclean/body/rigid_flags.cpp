@@ -161,10 +161,10 @@ void vouch(const RigidBody& body, const EdgeDistances& d, const EdgeLimits& limi
       const auto needed = std::clamp<Index>(static_cast<Index>(own.size()), 1, enough);
       const auto joint = static_cast<Index>(j);
       flags.consistent(i, joint) = right >= needed && !wrong;
-      flags.vouched(i, joint) = flags.consistent(i, joint) && !flags.bad(i, joint);
+      flags.confirmed(i, joint) = flags.consistent(i, joint) && !flags.bad(i, joint);
     }
     const bool most = 2 * flags.consistent.row(i).count() > linked;
-    if (!most) flags.vouched.row(i).setConstant(false);
+    if (!most) flags.confirmed.row(i).setConstant(false);
   }
 }
 
@@ -198,7 +198,7 @@ RigidFlags judge(const BodyTake& take, const RigidBody& body, double size, doubl
   if (!flags.bones.empty()) turned = turning_in_noise(flags.bad, flags.bones, flags.bones.largest);
   flags.bad = flags.bad && !turned;
   vouch(body, d, limits, flags);
-  flags.vouched = flags.vouched || (turned && !flags.bad);
+  flags.confirmed = flags.confirmed || (turned && !flags.bad);
   return flags;
 }
 

@@ -8,9 +8,9 @@ namespace moclean {
 /// What the distances between joints say of every joint in every frame, [frames x joints].
 struct RigidFlags {
   Mask bad;          ///< wrong: to blame for distances that are off
-  Mask vouched;      ///< right: two rigid distances or more say so and none the contrary, or as
+  Mask confirmed;    ///< right: two rigid distances or more say so and none the contrary, or as
                      ///< judge() takes flags back
-  Mask consistent;   ///< as vouched, but one distance is enough where a joint has no more
+  Mask consistent;   ///< as confirmed, but one distance is enough where a joint has no more
   NoisyBones bones;  ///< empty where a distance is exact
 };
 

@@ -41,9 +41,9 @@ bool has_body(const Clip& take) {
 
 // A take as the windows see it.
 struct Prepared {
-  Matrix samples;            // NaN where missing or flagged
-  JointKnowledge knowledge;  // of the whole take
-  NoisyBones bones;          // of the whole take, or empty
+  Matrix samples;     // NaN where missing or flagged
+  MotionPrior prior;  // of the whole take
+  NoisyBones bones;   // of the whole take, or empty
   Spans spans;
 };
 
@@ -83,7 +83,7 @@ void spare_hopeless(const Mask& seen, const Spans& spans, Mask& bad) {
 void look_at_body(double frame_rate, const Automatic& method, Prepared& prepared) {
   const BodyTake take = body_take(prepared.samples, frame_rate);
   BodyFindings found = look_at(take, prepared.samples);
-  if (found.knowledge.size <= 0) return;
+  if (found.prior.size <= 0) return;
   if (!found.other_motions.empty())
     prepared.spans = windows(method, take.frames(), found.other_motions);
   if (method.reject == Rejection::off || method.reject == Rejection::gentle)
@@ -91,22 +91,23 @@ void look_at_body(double frame_rate, const Automatic& method, Prepared& prepared
   spare_hopeless(take.seen, prepared.spans, found.bad);
   drop(found.bad, prepared.samples);
   fill_from_body(take, found);
-  prepared.knowledge = std::move(found.knowledge);
+  prepared.prior = std::move(found.prior);
   prepared.bones = std::move(found.bones);
 }
 
 Prepared prepare(const Clip& take, const Automatic& method) {
-  Prepared prepared{.samples = take.samples, .knowledge = {}, .bones = {}, .spans = {}};
+  Prepared prepared{.samples = take.samples, .prior = {}, .bones = {}, .spans = {}};
   prepared.spans = windows(method, take.frames(), {});
   if (method.body == BodyRules::on && has_body(take)) look_at_body(rate_of(take), method, prepared);
   return prepared;
 }
 
-JointKnowledge cut(const JointKnowledge& known, const Span& span) {
-  JointKnowledge part{.size = known.size, .noise = known.noise, .links = known.links};
-  if (known.vouched.size() > 0) part.vouched = known.vouched.middleRows(span.first, span.frames());
-  if (known.drawn.size() > 0) {
-    part.drawn = known.drawn.middleRows(span.first, span.frames());
+MotionPrior cut(const MotionPrior& known, const Span& span) {
+  MotionPrior part{.size = known.size, .noise = known.noise, .links = known.links};
+  if (known.confirmed.size() > 0)
+    part.confirmed = known.confirmed.middleRows(span.first, span.frames());
+  if (known.positions.size() > 0) {
+    part.positions = known.positions.middleRows(span.first, span.frames());
     part.variance = known.variance.middleRows(span.first, span.frames());
   }
   return part;
@@ -128,7 +129,9 @@ MatrixNormal matrix_normal_of(const Clip& take, Rejection reject) {
 struct Group {
   MatrixNormal method;
   std::vector<std::size_t> takes;
-  std::vector<Index> first_segments = {};  // of the takes, once they are stacked
+  // Once they are stacked:
+  std::vector<Index> first_segments = {};  // of the takes
+  std::vector<MotionPrior> priors = {};    // of the segments
 };
 
 // Some of the takes, by columns and by what the method depends on; those that stand still are in
@@ -152,14 +155,14 @@ std::vector<Group> group_alike(std::span<const MovingPart> parts, std::span<cons
   return groups;
 }
 
-// The windows of a group one below the other; their knowledge goes to its method.
+// The windows of a group one below the other; their priors go to it.
 SegmentBatch stack(std::span<const Prepared> prepared, Group& group) {
   std::vector<Index> first_row = {0};
   for (const std::size_t t : group.takes) {
     group.first_segments.push_back(static_cast<Index>(first_row.size()) - 1);
     for (const Span& span : prepared[t].spans) {
       first_row.push_back(first_row.back() + span.frames());
-      group.method.knowledge.push_back(cut(prepared[t].knowledge, span));
+      group.priors.push_back(cut(prepared[t].prior, span));
     }
   }
   SegmentBatch data(prepared[group.takes.front()].samples.cols(), std::move(first_row));
@@ -226,12 +229,12 @@ Denoised result_of(const Clip& take, const Prepared& prepared, const Solution& s
   Matrix motion = blend_spans(solution.low_rank, spans, segment);
   const Mask observed = !take.samples.array().isNaN();
   const Mask trusted = observed && blend_spans(*solution.trusted, spans, segment).array() >= 0.5;
-  if (prepared.knowledge.noise > 0) go_back(take, trusted, motion);
+  if (prepared.prior.noise > 0) go_back(take, trusted, motion);
   Denoised result;
   result.clip = like(take, std::move(motion));
   result.sigma = like(take, blend_spans(*solution.deviation, spans, segment));
   result.trusted = trusted;
-  leave_unknown(take, prepared.knowledge.size, result);
+  leave_unknown(take, prepared.prior.size, result);
   for (std::size_t s = 0; s < spans.size(); ++s)
     result.segments.push_back({spans[s].first, spans[s].frames(),
                                solution.segments[static_cast<std::size_t>(segment) + s]});
@@ -282,7 +285,7 @@ class Solving {
         monitor_.report({.finished = progress_.finished + own.finished, .total = progress_.total});
       };
     const SegmentBatch data = stack(prepared_, group);
-    const Solution solution = backend_.solve(data, std::move(group.method), part);
+    const Solution solution = backend_.solve({data, group.priors}, group.method, part);
     progress_.finished += data.segments();
     for_each_index(static_cast<Index>(group.takes.size()), jobs_, [&](Index i) {
       const std::size_t t = group.takes[static_cast<std::size_t>(i)];
@@ -300,17 +303,17 @@ class Solving {
   Progress progress_;
 };
 
-// Vouches for the motion that was rejected; returns the takes of which that is true of some.
-std::vector<std::size_t> vouch_for_motion(std::span<const MovingPart> parts,
-                                          std::span<const Denoised> results, int jobs,
-                                          std::span<Prepared> prepared) {
+// Confirms the motion that was rejected; returns the takes of which that is true of some.
+std::vector<std::size_t> confirm_motion(std::span<const MovingPart> parts,
+                                        std::span<const Denoised> results, int jobs,
+                                        std::span<Prepared> prepared) {
   std::vector<char> found(parts.size());
   for_each_index(static_cast<Index>(parts.size()), jobs, [&](Index t) {
     const auto i = static_cast<std::size_t>(t);
     const Mask motion = rejected_motion(parts[i], prepared[i], results[i]);
     if (!motion.any()) return;
-    Mask& vouched = prepared[i].knowledge.vouched;
-    vouched = vouched || motion;
+    Mask& confirmed = prepared[i].prior.confirmed;
+    confirmed = confirmed || motion;
     found[i] = 1;
   });
   std::vector<std::size_t> some;
@@ -358,7 +361,7 @@ std::vector<Denoised> AutomaticDenoiser::denoise(std::span<const Clip> takes,
   Solving solving(parts, prepared, method_.reject, backend_, jobs_, monitor);
   solving.solve(some, results);
   if (method_.reject == Rejection::automatic)
-    solving.solve(vouch_for_motion(parts, results, jobs_, prepared), results);
+    solving.solve(confirm_motion(parts, results, jobs_, prepared), results);
   double frames = 0;
   for (const Prepared& one : prepared) frames += static_cast<double>(one.samples.rows());
   const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();

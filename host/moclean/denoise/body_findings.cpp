@@ -19,14 +19,14 @@ constexpr double filled_seconds = 0.067;  // shortest gap that the body fills
 constexpr double soft_floor = 2e-3;       // deviation of distances that is steady, share of size
 
 // The body of a take whose differences in time show noise of the deviation `dense`; what its
-// lengths show beyond goes to the knowledge. Raises `smallest` to their noise.
+// lengths show beyond goes to the prior. Raises `smallest` to their noise.
 RigidBody learn_body(const BodyTake& take, double dense, double rounding, BodyFindings& found) {
   found.smallest = std::max(found.smallest, noise_of_distance * dense);
   RigidBody body = learn_rigid_body(take, found.smallest, rounding);
   if (std::ranges::any_of(body.edges, &RigidEdge::exact)) return body;
   const LengthNoise noise = length_noise(take);
-  if (!noise.correlated(found.knowledge.size, dense)) return body;
-  found.knowledge.noise = noise.slow;
+  if (!noise.correlated(found.prior.size, dense)) return body;
+  found.prior.noise = noise.slow;
   found.smallest = std::max(found.smallest, noise_of_distance * noise.deviation);
   return learn_rigid_body(take, found.smallest, rounding);
 }
@@ -36,7 +36,7 @@ void look_for_jumps(const BodyTake& take, const RigidBody& body, const Mask& con
                     BodyFindings& found) {
   const Mask trusted = consistent && !found.bad && take.seen;
   std::vector<SuddenSteps> steps =
-      sudden_steps(take, trusted, least_sudden_step(found.knowledge.size, found.smallest));
+      sudden_steps(take, trusted, least_sudden_step(found.prior.size, found.smallest));
   Mask jumps = jump_flags(take, steps, body);
   found.other_motions = cuts(trusted, steps, body, jumps);
   if (!found.other_motions.empty()) {
@@ -50,7 +50,7 @@ void look_for_jumps(const BodyTake& take, const RigidBody& body, const Mask& con
 
 BodyFindings look_at(const BodyTake& take, const Matrix& samples) {
   BodyFindings found;
-  JointKnowledge& known = found.knowledge;
+  MotionPrior& known = found.prior;
   known.size = body_size(take);
   if (known.size <= 0) return found;
   found.smallest = edge_floor * known.size;
@@ -62,16 +62,16 @@ BodyFindings look_at(const BodyTake& take, const Matrix& samples) {
       known.links.push_back({edge.first, edge.second, edge.length, edge.hard, edge.exact});
   RigidFlags flags = judge(take, body, known.size, found.smallest, known.noise <= 0);
   found.bad = std::move(flags.bad);
-  known.vouched = std::move(flags.vouched);
+  known.confirmed = std::move(flags.confirmed);
   found.bones = std::move(flags.bones);
   if (body.is_rigid()) look_for_jumps(take, body, flags.consistent, found);
   return found;
 }
 
 void fill_from_body(const BodyTake& take, BodyFindings& found) {
-  JointKnowledge& known = found.knowledge;
-  known.vouched = known.vouched && !found.bad;
-  known.drawn = Matrix::Zero(take.frames(), 3 * take.joints());
+  MotionPrior& known = found.prior;
+  known.confirmed = known.confirmed && !found.bad;
+  known.positions = Matrix::Zero(take.frames(), 3 * take.joints());
   known.variance =
       Matrix::Constant(take.frames(), take.joints(), std::numeric_limits<double>::infinity());
   const double floor = std::max(found.smallest, soft_floor * known.size);
@@ -87,7 +87,7 @@ void fill_from_body(const BodyTake& take, BodyFindings& found) {
                    take.frame_rate},
                   floor, least);
     if (!fills.empty()) {
-      known.drawn.middleRows(first, frames) = fills.positions;
+      known.positions.middleRows(first, frames) = fills.positions;
       known.variance.middleRows(first, frames) = fills.variance;
     }
     first = last;

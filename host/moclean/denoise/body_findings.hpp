@@ -4,13 +4,13 @@
 
 #include "moclean/body/body_take.hpp"
 #include "moclean/body/taken_back.hpp"
-#include "moclean/solve/matrix_normal.hpp"
+#include "moclean/solve/motion_prior.hpp"
 
 namespace moclean {
 
 /// What a take tells of its body before anything is fitted.
 struct BodyFindings {
-  JointKnowledge knowledge;          ///< of the whole take; size 0: there is no body
+  MotionPrior prior;                 ///< of the whole take; size 0: there is no body
   Mask bad;                          ///< [frames x joints]: distances say it is wrong
   NoisyBones bones;                  ///< empty where a distance is exact
   std::vector<Index> other_motions;  ///< frames in which another motion begins, ascending
@@ -22,7 +22,7 @@ struct BodyFindings {
 BodyFindings look_at(const BodyTake& take, const Matrix& samples);
 
 /// Fills the gaps and what is bad of each of the motions from that motion alone (fill_gaps):
-/// `drawn` and `variance` of the knowledge. Vouched is no more what is bad.
+/// `positions` and `variance` of the prior. Confirmed is no more what is bad.
 void fill_from_body(const BodyTake& take, BodyFindings& found);
 
 }  // namespace moclean

@@ -38,12 +38,26 @@ bool accepts_missing(const Method& method) {
       method);
 }
 
+bool takes_prior(const Method& method) {
+  return std::visit(
+      []<class M>(const M&) {
+        return requires { M::takes_prior; };
+      },
+      method);
+}
+
 bool tells_trust(const Method& method) { return std::holds_alternative<MatrixNormal>(method); }
 
 void require_finite(const SegmentBatch& data) { require_entries(data, false); }
 
-void require_usable(const SegmentBatch& data, const Method& method) {
-  require_entries(data, accepts_missing(method));
+void require_usable(const Problem& problem, const Method& method) {
+  require_entries(problem.data, accepts_missing(method));
+  const auto priors = static_cast<Index>(problem.priors.size());
+  if (priors == 0) return;
+  if (!takes_prior(method)) throw ArgumentError("priors are not supported by this method");
+  if (priors != problem.data.segments())
+    throw ArgumentError(fmt::format("{} priors for {} segments, expected one for each", priors,
+                                    problem.data.segments()));
 }
 
 }  // namespace moclean

@@ -10,6 +10,7 @@
 #include "moclean/core/segment_batch.hpp"
 #include "moclean/solve/matrix_completion.hpp"
 #include "moclean/solve/matrix_normal.hpp"
+#include "moclean/solve/problem.hpp"
 #include "moclean/solve/robust_pca.hpp"
 #include "moclean/solve/singular_value_thresholding.hpp"
 #include "moclean/solve/temporal_robust_pca.hpp"
@@ -23,6 +24,9 @@ using Method = std::variant<RobustPca, TruncatedSvd, SingularValueThresholding, 
 
 /// Whether a method takes NaN as "not observed"; the others need every sample.
 bool accepts_missing(const Method& method);
+
+/// Whether a method uses what is known beside the samples.
+bool takes_prior(const Method& method);
 
 /// Whether a method tells which samples it used, and how far it may be off.
 bool tells_trust(const Method& method);
@@ -78,9 +82,10 @@ inline constexpr double largest_entry = 1e140;
 /// infinite or larger than `largest_entry`.
 void require_finite(const SegmentBatch& data);
 
-/// The same, but lets NaN pass if the method accepts it. Every backend calls it before it computes
+/// The same, but lets NaN pass if the method accepts it; throws ArgumentError for priors that the
+/// method does not take, or that are not one per segment. Every backend calls it before it computes
 /// anything.
-void require_usable(const SegmentBatch& data, const Method& method);
+void require_usable(const Problem& problem, const Method& method);
 
 /// Where a method is computed.
 class Backend {
@@ -97,8 +102,8 @@ class Backend {
   /// Solves every segment. The result of a segment depends on its own data and the method only, bit
   /// for bit: not on its neighbours or its place in the batch. Throws ShapeError naming row and
   /// column if the data holds infinity, or NaN that the method does not accept, ArgumentError for
-  /// parameters out of range, Cancelled.
-  virtual Solution solve(const SegmentBatch& data, const Method& method,
+  /// parameters out of range and for priors it does not take, Cancelled.
+  virtual Solution solve(const Problem& problem, const Method& method,
                          const Monitor& monitor = {}) = 0;
 };
 

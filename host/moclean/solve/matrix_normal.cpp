@@ -20,12 +20,6 @@ void require_count(const char* name, Index value) {
 
 }  // namespace
 
-bool JointKnowledge::operator==(const JointKnowledge& other) const {
-  return size == other.size && noise == other.noise && links == other.links &&
-         vouched.rows() == other.vouched.rows() && vouched.cols() == other.vouched.cols() &&
-         (vouched == other.vouched).all() && drawn == other.drawn && variance == other.variance;
-}
-
 void check(const MatrixNormal& method) {
   require_count("joint-columns", method.joint_columns);
   require(method.median_frames >= 1 && method.median_frames % 2 == 1, "median-frames",

@@ -1,34 +1,10 @@
 #pragma once
 
 #include <string_view>
-#include <vector>
 
 #include "moclean/core/parameters.hpp"
 
 namespace moclean {
-
-/// Two joints, runs of MatrixNormal::joint_columns columns, whose distance is constant.
-struct DistanceLink {
-  Index first = 0;
-  Index second = 0;
-  double length = 0;   ///< unit of the data
-  bool hard = false;   ///< constant up to the noise: joints at its ends move together
-  bool exact = false;  ///< a length to build on in gaps
-
-  bool operator==(const DistanceLink&) const = default;
-};
-
-/// What is known of one segment beside its samples.
-struct JointKnowledge {
-  double size = 0;    ///< unit of the floors of noise, a body's size; above 0
-  double noise = 0;   ///< least sigma: noise that neighbouring frames share hides from them
-  Mask vouched = {};  ///< [frames x joints]: samples the links say are right; or empty
-  std::vector<DistanceLink> links = {};
-  Matrix drawn = {};     ///< [frames x columns]: where missing samples should be; or empty
-  Matrix variance = {};  ///< [frames x joints], of a column of that; infinite: not known
-
-  bool operator==(const JointKnowledge& other) const;
-};
 
 /// Robust smoothing under a matrix-normal model of motion: the accelerations (second differences
 /// over the frames, rows of Delta S) are normal with a full covariance Q over all columns, learned
@@ -43,6 +19,7 @@ struct JointKnowledge {
 /// Missing samples (NaN) are filled. A column without any sample comes out as NaN.
 struct MatrixNormal {
   static constexpr bool accepts_missing = true;
+  static constexpr bool takes_prior = true;
 
   Index joint_columns = 3;    ///< neighbouring columns that fail together: x, y, z; at least 1
   Index median_frames = 7;    ///< window of the first guess, odd
@@ -53,9 +30,8 @@ struct MatrixNormal {
   double soft_last = 4;       ///< and of the last
   double hard = 6;            ///< samples farther than this are rejected, predictive deviations
   int solve_iterations = 10;  ///< most conjugate gradient iterations of a step, at least 1
-  double soft_tolerance = 1e-5;   ///< of a soft step: on the residual, relative to that of S = 0
-  double hard_tolerance = 1e-6;   ///< of a hard one
-  std::vector<JointKnowledge> knowledge = {};  ///< per segment; empty: none of any
+  double soft_tolerance = 1e-5;  ///< of a soft step: on the residual, relative to that of S = 0
+  double hard_tolerance = 1e-6;  ///< of a hard one
 
   /// Of the conjugate gradients of a step; the first guess is smoothed before step 0 as in it.
   double tolerance(int step) const { return step < soft_steps ? soft_tolerance : hard_tolerance; }

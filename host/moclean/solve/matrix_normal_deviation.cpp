@@ -19,7 +19,9 @@ namespace {
 
 constexpr double least_learned = 1.15, most_learned = 1.5, frames_learned = 5;  // learned_noise()
 constexpr double alone_variance = 1.2 * 1.2;  // of gaps that others do not share, over the trials'
-constexpr double least_joined = 0.25;         // of the drawn variance: both know the same samples
+// Of the joined variance of a model and a prior that know the same samples: at least this share of
+// the prior's, but no more than so many of the model's, which has left gross errors out.
+constexpr double least_joined = 0.25, most_joined = 9;
 constexpr double open_floor = 1.5 * 1.5;  // of samples not in use: solves end before they converge
 constexpr std::array<Index, 7> lengths = {1, 3, 7, 15, 31, 63, 127};  // of gaps tried; h = 2^index
 constexpr std::size_t fewest_trials = 16;
@@ -341,9 +343,10 @@ Eigen::VectorXd conditional_variance(const Matrix& Q, const Matrix& R, const Col
 Matrix marginal_deviation(const MotionEstimate& estimate) {
   Matrix variance = noise_variance(estimate);
   if (!estimate.used.all()) add_open_variance(estimate, variance);
-  const auto drawn = estimate.drawn_variance.array();
-  const auto joined = variance.array() * drawn / (variance.array() + drawn);
-  variance = drawn.isFinite().select(joined.max(least_joined * drawn), variance.array());
+  const auto prior = estimate.prior_variance.array();
+  const auto joined = variance.array() * prior / (variance.array() + prior);
+  const auto least = (least_joined * prior).min(most_joined * variance.array());
+  variance = prior.isFinite().select(joined.max(least), variance.array());
   add_doubt(estimate, variance);
   const auto floors = estimate.used.cast<double>() * (1 - open_floor) + open_floor;
   return (variance.array() + floors * estimate.floor * estimate.floor).sqrt();

@@ -12,7 +12,7 @@ struct MotionEstimate {
   Matrix motion;              ///< S
   Mask used;                  ///< samples that S was fitted to
   Matrix rejected;            ///< D - S of observed samples that S was not fitted to, else 0
-  Matrix drawn_variance;      ///< of what else is known of missing samples; infinite: nothing
+  Matrix prior_variance;      ///< of what else is known of missing samples; infinite: nothing
   Matrix eigenvectors;        ///< of Q, in rows [columns x columns]
   Eigen::VectorXd spectrum;   ///< eigenvalues of Q, its ridge included, above 0
   Eigen::VectorXd precision;  ///< of the accelerations, over Q's [frames - 2]

@@ -29,17 +29,12 @@ constexpr double dense_noise = 10. / 6;   // sigma^2 over mean e from which smoo
 constexpr double most_stiffness = 1e3;
 constexpr double learned_weight = 0.3;  // least weight of samples that scales are learned from
 constexpr double clip_deviations = 5, near_deviations = 3;
-// Of drawn samples: the errors in a gap are one slow curve, and in a short one S knows better.
-constexpr double drawn_weight_per_lag = 0.03, most_drawn_weight = 0.3;
-constexpr double length_weight = 0.1, length_reach = 4;  // of drawn joints; frames
+// Of prior samples: the errors in a gap are one slow curve, and in a short one S knows better.
+constexpr double prior_weight_per_lag = 0.03, most_prior_weight = 0.3;
+constexpr double length_weight = 0.1, length_reach = 4;  // of joints put on lengths; frames
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 double square(double x) { return x * x; }
-
-const JointKnowledge& knowledge_of(const MatrixNormal& method, Index segment) {
-  static const JointKnowledge none;
-  return method.knowledge.empty() ? none : method.knowledge[static_cast<std::size_t>(segment)];
-}
 
 // Variance of what samples at the harmonic distance h predict, 1 / R_jj being 1: a second
 // difference between neighbours, a random walk of velocities over a gap.
@@ -53,47 +48,47 @@ double kept_power(double noise, double power) {
 }
 
 MatrixNormalWindow::MatrixNormalWindow(const ConstMatrixRef& data, const MatrixNormal& method,
-                                       Index segment)
-    : method_(&method), known_(&knowledge_of(method, segment)), frames_(data.rows()) {
+                                       const MotionPrior& prior)
+    : method_(&method), prior_(&prior), frames_(data.rows()) {
   const Index rows = std::max(data.rows(), data.cols());
   const Mask seen = !data.array().isNaN();
   data_ = Matrix::Zero(rows, data.cols());
   data_.topRows(frames_) = seen.select(data, 0);
   observed_ = seen.cast<double>();
-  const double size = known_->size > 0 ? known_->size : column_scale(data);
+  const double size = prior_->size > 0 ? prior_->size : column_scale(data);
   noise_floor_ = noise_floor_share * size;
-  least_noise_ = std::max(rounding_deviation(data), known_->noise);
+  least_noise_ = std::max(rounding_deviation(data), prior_->noise);
   sigma_ = std::max({dense_noise_level(data), least_noise_, soft_floor_share * noise_floor_});
   weights_ = observed_;
   precision_ = Eigen::VectorXd::Ones(rows);
   precision_.tail(std::min<Index>(rows, 2)).setZero();
-  find_drawn();
+  find_prior_samples();
   target_ = data_;
   if (method.joint_columns == 3 && columns() % 3 == 0 && !trivial())
     nearness_ = nearness_of(all_filled());
 }
 
-void MatrixNormalWindow::find_drawn() {
+void MatrixNormalWindow::find_prior_samples() {
   present_ = observed_.array() > 0;
-  if (known_->drawn.size() == 0) return;
+  if (prior_->positions.size() == 0) return;
   for (Index j = 0; j < columns(); ++j)
     for (Index i = 0; i < frames_; ++i) {
       const Index first = i;
       while (i < frames_ && observed_(i, j) <= 0) ++i;
-      find_drawn(j, first, i);
+      find_prior_samples(j, first, i);
     }
 }
 
 // Those of a gap.
-void MatrixNormalWindow::find_drawn(Index j, Index first, Index last) {
+void MatrixNormalWindow::find_prior_samples(Index j, Index first, Index last) {
   const double lags = static_cast<double>(last - first) / static_cast<double>(method_->lag_frames);
-  const double weight = std::min(drawn_weight_per_lag * lags, most_drawn_weight);
+  const double weight = std::min(prior_weight_per_lag * lags, most_prior_weight);
   for (Index i = first; i < last; ++i) {
-    const double variance = known_->variance(i, j / method_->joint_columns);
+    const double variance = prior_->variance(i, j / method_->joint_columns);
     if (!std::isfinite(variance)) continue;
-    drawn_.push_back({i, j, variance, weight});
+    prior_samples_.push_back({i, j, variance, weight});
     present_(i, j) = true;
-    data_(i, j) = known_->drawn(i, j);
+    data_(i, j) = prior_->positions(i, j);
   }
 }
 
@@ -210,12 +205,12 @@ void MatrixNormalWindow::weigh(const ConstMatrixRef& motion, const ConstMatrixRe
     weigh_hard(energy, motion);
   else
     weigh_softly(energy);
-  draw();
+  add_prior_samples();
 }
 
-// Draws S to where missing samples should be.
-void MatrixNormalWindow::draw() {
-  for (const Drawn& sample : drawn_) {
+// Missing samples where they should be, as samples of their variance.
+void MatrixNormalWindow::add_prior_samples() {
+  for (const PriorSample& sample : prior_samples_) {
     const double weight = sample.weight / (square(sigma_) + sample.variance);
     double& all = solve_weights_(sample.row, sample.column);
     double& target = target_(sample.row, sample.column);
@@ -232,8 +227,8 @@ void MatrixNormalWindow::weigh_softly(const Matrix& energy) {
       method_->soft_first * std::pow(method_->soft_last / method_->soft_first, place);
   for (Index i = 0; i < frames_; ++i)
     for (Index j = 0; j < columns(); ++j) {
-      weights_(i, j) = vouched(i, j) ? observed_(i, j)
-                                     : observed_(i, j) / square(1 + energy(i, j) / square(cut));
+      weights_(i, j) = confirmed(i, j) ? observed_(i, j)
+                                       : observed_(i, j) / square(1 + energy(i, j) / square(cut));
       solve_weights_(i, j) = weights_(i, j) / (square(sigma_) + predictive_(j) / 6);
     }
 }
@@ -241,10 +236,10 @@ void MatrixNormalWindow::weigh_softly(const Matrix& energy) {
 void MatrixNormalWindow::weigh_hard(const Matrix& energy, const ConstMatrixRef& motion) {
   Mask good = energy.array() < square(method_->hard);
   for (Index j = 0; j < columns(); ++j)
-    for (Index i = 0; i < frames_; ++i) good(i, j) = good(i, j) || vouched(i, j);
+    for (Index i = 0; i < frames_; ++i) good(i, j) = good(i, j) || confirmed(i, j);
   weights_ = good.select(observed_, 0);
   solve_weights_.topRows(frames_) = weights_ / square(sigma_);
-  const bool exact = std::ranges::any_of(known_->links, [](const auto& l) { return l.exact; });
+  const bool exact = std::ranges::any_of(prior_->links, [](const auto& l) { return l.exact; });
   if (exact) build_on_lengths(motion);
 }
 
@@ -260,14 +255,14 @@ void MatrixNormalWindow::build_on_lengths(const ConstMatrixRef& motion) {
   const Mask open = observed_.array() <= 0 && h.array() > length_reach;
   for (Index i = 0; i < frames_; ++i)
     if (!open.row(i).any()) free.row(i).setConstant(false);  // a frame that asks for nothing
-  Matrix drawn = lost.select(motion.topRows(frames_), data_.topRows(frames_));
-  const Mask moved = put_on_lengths(known_->links, free, drawn);
+  Matrix placed = lost.select(motion.topRows(frames_), data_.topRows(frames_));
+  const Mask moved = put_on_lengths(prior_->links, free, placed);
   target_ = data_;
   target_changed_ = true;
   for (Index i = 0; i < frames_; ++i)
     for (Index j = 0; j < columns(); ++j) {
       if (!open(i, j) || !moved(i, j / width)) continue;
-      target_(i, j) = drawn(i, j);
+      target_(i, j) = placed(i, j);
       solve_weights_(i, j) =
           length_weight / (square(sigma_) + open_variance(h(i, j)) * predictive_(j));
     }
@@ -317,7 +312,7 @@ void MatrixNormalWindow::leave_unobserved(Matrix& result) const {
     if (observed_.col(j).sum() == 0) result.col(j).setConstant(missing);
 }
 
-// Column j of D, gaps where nothing is drawn filled linearly.
+// Column j of D, gaps where nothing is expected filled linearly.
 std::vector<double> MatrixNormalWindow::filled(Index j) const {
   std::vector<double> channel(static_cast<std::size_t>(frames_));
   Eigen::Map<Eigen::VectorXd>(channel.data(), frames_) = data_.col(j).head(frames_);
@@ -350,12 +345,13 @@ Mask MatrixNormalWindow::trusted() const { return weights_.array() > 0; }
 Matrix MatrixNormalWindow::deviation(const ConstMatrixRef& motion,
                                      const ConstMatrixRef& eigenvectors) const {
   if (step_ == 0) return Matrix::Constant(frames_, columns(), missing);
-  Matrix drawn = Matrix::Constant(frames_, columns(), std::numeric_limits<double>::infinity());
-  for (const Drawn& sample : drawn_) drawn(sample.row, sample.column) = sample.variance;
+  Matrix prior = Matrix::Constant(frames_, columns(), std::numeric_limits<double>::infinity());
+  for (const PriorSample& sample : prior_samples_)
+    prior(sample.row, sample.column) = sample.variance;
   Matrix result = marginal_deviation({.motion = motion.topRows(frames_),
                                       .used = trusted(),
                                       .rejected = rejected(motion.topRows(frames_)),
-                                      .drawn_variance = std::move(drawn),
+                                      .prior_variance = std::move(prior),
                                       .eigenvectors = eigenvectors,
                                       .spectrum = spectrum_,
                                       .precision = precision_.head(frames_ - 2),

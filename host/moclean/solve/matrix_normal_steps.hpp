@@ -7,6 +7,7 @@
 
 #include "moclean/core/matrix.hpp"
 #include "moclean/solve/matrix_normal.hpp"
+#include "moclean/solve/motion_prior.hpp"
 
 namespace moclean {
 
@@ -21,9 +22,9 @@ namespace moclean {
 /// extended by frames without samples until rows = columns, which leaves the minimiser as it is.
 class MatrixNormalWindow {
  public:
-  /// `data` is [frames x columns], NaN where missing; `segment` its place in method.knowledge.
-  /// `method` has to outlive the window.
-  MatrixNormalWindow(const ConstMatrixRef& data, const MatrixNormal& method, Index segment = 0);
+  /// `data` is [frames x columns], NaN where missing. `method` and `prior` outlive the window.
+  MatrixNormalWindow(const ConstMatrixRef& data, const MatrixNormal& method,
+                     const MotionPrior& prior);
 
   Index frames() const { return frames_; }
   Index rows() const { return data_.rows(); }
@@ -33,7 +34,7 @@ class MatrixNormalWindow {
   /// Nothing to learn accelerations from: fewer than five frames, or no sample at all.
   bool trivial() const { return frames_ < 5 || observed_.sum() == 0; }
 
-  /// What comes out of a trivial window: D, gaps where nothing is drawn filled linearly.
+  /// What comes out of a trivial window: D, gaps where nothing is expected filled linearly.
   Matrix filled() const;
 
   /// What S begins as: `motion` is the data's running medians, gaps filled linearly, smoothed with
@@ -88,15 +89,16 @@ class MatrixNormalWindow {
   Matrix deviation(const ConstMatrixRef& motion, const ConstMatrixRef& eigenvectors) const;
 
  private:
-  // A missing sample that is known about.
-  struct Drawn {
+  // A missing sample of which the prior knows.
+  struct PriorSample {
     Index row, column;
     double variance;
     double weight;  // share of the precision with which it counts
   };
 
-  bool vouched(Index frame, Index column) const {
-    return known_->vouched.size() > 0 && known_->vouched(frame, column / method_->joint_columns);
+  bool confirmed(Index frame, Index column) const {
+    return prior_->confirmed.size() > 0 &&
+           prior_->confirmed(frame, column / method_->joint_columns);
   }
   bool hard() const { return step_ >= method_->soft_steps; }
   double share_kept() const;
@@ -108,23 +110,23 @@ class MatrixNormalWindow {
   Matrix energies(const ConstMatrixRef& motion) const;
   void weigh_softly(const Matrix& energy);
   void weigh_hard(const Matrix& energy, const ConstMatrixRef& motion);
-  void find_drawn();
-  void find_drawn(Index j, Index first, Index last);
-  void draw();
+  void find_prior_samples();
+  void find_prior_samples(Index j, Index first, Index last);
+  void add_prior_samples();
   void build_on_lengths(const ConstMatrixRef& motion);
   std::vector<double> residuals(const ConstMatrixRef& motion) const;
 
   const MatrixNormal* method_;
-  const JointKnowledge* known_;
+  const MotionPrior* prior_;
   Index frames_;
-  Matrix data_, observed_;  // D also holds what is drawn
-  Mask present_;            // observed or drawn
-  std::vector<Drawn> drawn_;
+  Matrix data_, observed_;  // D also holds prior samples
+  Mask present_;            // observed, or a prior sample
+  std::vector<PriorSample> prior_samples_;
   Matrix nearness_;                   // of joints; empty where columns are no joints
   double noise_floor_, least_noise_;  // least sigma: of the data's size, and what rounding makes
   double sigma_;
   int step_ = 0;
-  Matrix weights_, solve_weights_, target_;  // W [frames x columns], W / v, what S is drawn to
+  Matrix weights_, solve_weights_, target_;  // W [frames x columns], W / v, D or a prior
   bool target_changed_ = true;
   Eigen::VectorXd precision_;              // [rows]
   Eigen::VectorXd spectrum_, predictive_;  // e of this step's Q with its ridge; 1 / R_jj

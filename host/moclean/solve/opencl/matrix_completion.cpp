@@ -162,10 +162,10 @@ void MatrixCompletionSolver::update(Run& run, const MatrixCompletion& method,
   finished(done);
 }
 
-void MatrixCompletionSolver::solve(const SegmentBatch& data, Index first, Index last,
+void MatrixCompletionSolver::solve(const Problem& problem, Index first, Index last,
                                    const MatrixCompletion& method, Solution& solution,
                                    const Finished& finished, const std::stop_token& stop) {
-  Run run(device_, data, first, last, method);
+  Run run(device_, problem.data, first, last, method);
   start(run);
   const Index trivial = run.batch.segments() - run.batch.active_count();
   if (trivial > 0) finished(trivial);

@@ -29,10 +29,10 @@ SegmentBatch extended_shape(const SegmentBatch& data, Index first, Index last) {
 // What one batch needs, on the device and beside it. What is computed per window, is by `jobs`
 // threads.
 struct MatrixNormalSolver::Run {
-  Run(const Device& device, const SegmentBatch& data, Index first, Index last,
+  Run(const Device& device, const Problem& problem, Index first, Index last,
       const MatrixNormal& method, int threads)
       : jobs(threads),
-        host(extended_shape(data, first, last)),
+        host(extended_shape(problem.data, first, last)),
         motion(host.columns(), host.first_rows()),
         batch(device, host, 0, last - first),
         gradients(device, batch),
@@ -45,7 +45,8 @@ struct MatrixNormalSolver::Run {
     for (auto* buffer : {&Q, &Z, &eigenvalues}) buffer->fill_zero();
     steps.resize(windows());
     for_each_index(last - first, jobs, [&](Index b) {
-      steps[static_cast<std::size_t>(b)].emplace(data.segment(first + b), method, first + b);
+      steps[static_cast<std::size_t>(b)].emplace(problem.data.segment(first + b), method,
+                                                 problem.prior(first + b));
     });
     std::vector<std::int32_t> active;
     for (std::int32_t b = 0; b < static_cast<std::int32_t>(last - first); ++b)
@@ -237,13 +238,13 @@ void MatrixNormalSolver::weigh(Run& run) {
                run.gradients.D);
 }
 
-void MatrixNormalSolver::solve(const SegmentBatch& data, Index first, Index last,
+void MatrixNormalSolver::solve(const Problem& problem, Index first, Index last,
                                const MatrixNormal& method, Solution& solution,
                                const Finished& finished, const std::stop_token& stop) {
-  Run run(device_, data, first, last, method, jobs_);
+  Run run(device_, problem, first, last, method, jobs_);
   if (run.batch.active_count() > 0) {
-    run.terms.write(
-        std::vector<std::int32_t>(run.windows(), static_cast<std::int32_t>(data.columns())));
+    run.terms.write(std::vector<std::int32_t>(run.windows(),
+                                              static_cast<std::int32_t>(problem.data.columns())));
     first_smoothing(run, method);
     run.gradients.iterations.fill_zero();
     run.gradients.S.read(run.motion.storage());
@@ -257,7 +258,8 @@ void MatrixNormalSolver::solve(const SegmentBatch& data, Index first, Index last
     learn(run);
     weigh(run);
     smooth(run, method, step);
-    run.gradients.S.read(run.motion.storage());  // for the noise, and for the next step to learn from
+    run.gradients.S.read(
+        run.motion.storage());  // for the noise, and for the next step to learn from
     run.for_each_active(
         [&](std::int32_t b) { run.window(b).estimate_noise(run.motion.segment(b)); });
   }

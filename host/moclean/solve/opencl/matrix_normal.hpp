@@ -25,8 +25,8 @@ class MatrixNormalSolver {
   /// Bytes of device memory a window of this size takes.
   std::uint64_t memory_of(Index rows, Index columns, const MatrixNormal& method) const;
 
-  /// Solves the segments [first, last) of `data` into the same segments of `solution`.
-  void solve(const SegmentBatch& data, Index first, Index last, const MatrixNormal& method,
+  /// Solves the segments [first, last) of `problem` into the same segments of `solution`.
+  void solve(const Problem& problem, Index first, Index last, const MatrixNormal& method,
              Solution& solution, const Finished& finished, const std::stop_token& stop);
 
  private:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <mutex>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -63,36 +64,51 @@ class OpenClBackend::Worker {
         own_(std::in_place, device, another),
         device_(*own_) {}
 
-  /// use(solver) with the solver of a method, which is made at its first use.
-  template <class Use>
-  void with(const RobustPca&, const Use& use) {
+  /// Makes the solver of a method, which compiles its kernels, unless there is one.
+  void prepare(const RobustPca&) {
     if (!robust_pca_) robust_pca_.emplace(solver_of(device_, precision_, tuning_));
-    std::visit(use, *robust_pca_);
   }
-  template <class Use>
-  void with(const MatrixCompletion&, const Use& use) {
+  void prepare(const MatrixCompletion&) {
     if (!completion_) completion_.emplace(device_, tuning_);
-    use(*completion_);
   }
-  template <class Use>
-  void with(const TemporalRobustPca&, const Use& use) {
+  void prepare(const TemporalRobustPca&) {
     if (!temporal_) temporal_.emplace(device_, tuning_, jobs_);
-    use(*temporal_);
   }
-  template <class Use>
-  void with(const MatrixNormal&, const Use& use) {
+  void prepare(const MatrixNormal&) {
     if (!matrix_normal_) matrix_normal_.emplace(device_, tuning_, jobs_);
-    use(*matrix_normal_);
   }
-  template <class Spectral, class Use>
-  void with(const Spectral&, const Use& use) {
+  template <class Spectral>
+  void prepare(const Spectral&) {
     if (!spectral_) spectral_.emplace(device_, tuning_);
-    use(*spectral_);
+  }
+
+  /// use(solver) with the solver of a method that is prepared.
+  template <class Chosen, class Use>
+  void with(const Chosen& method, const Use& use) {
+    with_solver(*this, method, use);
+  }
+  template <class Chosen, class Use>
+  void with(const Chosen& method, const Use& use) const {
+    with_solver(*this, method, use);
   }
 
  private:
   using RobustPcaSolver =
       std::variant<opencl::RobustPcaSolver<double>, opencl::RobustPcaSolver<float>>;
+
+  template <class Self, class Chosen, class Use>
+  static void with_solver(Self& self, const Chosen&, const Use& use) {
+    if constexpr (std::is_same_v<Chosen, RobustPca>)
+      std::visit(use, *self.robust_pca_);
+    else if constexpr (std::is_same_v<Chosen, MatrixCompletion>)
+      use(*self.completion_);
+    else if constexpr (std::is_same_v<Chosen, TemporalRobustPca>)
+      use(*self.temporal_);
+    else if constexpr (std::is_same_v<Chosen, MatrixNormal>)
+      use(*self.matrix_normal_);
+    else
+      use(*self.spectral_);
+  }
 
   static RobustPcaSolver solver_of(const Device& device, Precision precision,
                                    const Tuning& tuning) {
@@ -128,8 +144,7 @@ std::string OpenClBackend::name() const {
 }
 
 void OpenClBackend::prepare(const Method& method) {
-  std::visit([this](const auto& chosen) { workers_.front()->with(chosen, [](const auto&) {}); },
-             method);
+  std::visit([this](const auto& chosen) { workers_.front()->prepare(chosen); }, method);
 }
 
 opencl::SegmentSize OpenClBackend::size_of(const SegmentBatch& data, Index b,
@@ -139,7 +154,7 @@ opencl::SegmentSize OpenClBackend::size_of(const SegmentBatch& data, Index b,
       .stacked = static_cast<std::uint64_t>(data.rows(b) * data.pitch()) * sizeof(double)};
   std::visit(
       [&](const auto& chosen) {
-        workers_.front()->with(chosen, [&](const auto& solver) {
+        std::as_const(*workers_.front()).with(chosen, [&](const auto& solver) {
           size.memory = solver.memory_of(data.rows(b), data.columns(), chosen);
         });
       },
@@ -192,7 +207,7 @@ void OpenClBackend::require_precision(const RobustPca& method) const {
         mixed_tolerance, method.tolerance));
 }
 
-Solution OpenClBackend::solve(const SegmentBatch& data, const Method& method,
+Solution OpenClBackend::solve(const Problem& problem, const Method& method,
                               const Monitor& monitor) {
   std::visit(
       [this](const auto& chosen) {
@@ -200,7 +215,8 @@ Solution OpenClBackend::solve(const SegmentBatch& data, const Method& method,
         require_precision(chosen);
       },
       method);
-  require_usable(data, method);
+  require_usable(problem, method);
+  const SegmentBatch& data = problem.data;
   Solution solution{SegmentBatch(data.columns(), data.first_rows()),
                     SegmentBatch(data.columns(), data.first_rows()),
                     std::vector<SegmentOutcome>(static_cast<std::size_t>(data.segments()))};
@@ -215,6 +231,7 @@ Solution OpenClBackend::solve(const SegmentBatch& data, const Method& method,
     progress.finished += count;
     if (monitor.report) monitor.report(progress);
   };
+  prepare(method);
   const opencl::BatchPlan plan = plan_of(data, method);
   prepare_workers(plan);
   const auto solve_batch = [&](int worker, Index batch, const std::stop_token& stop) {
@@ -222,8 +239,10 @@ Solution OpenClBackend::solve(const SegmentBatch& data, const Method& method,
     const auto last = plan.first[static_cast<std::size_t>(batch) + 1];
     std::visit(
         [&](const auto& chosen) {
-          workers_[static_cast<std::size_t>(worker)]->with(chosen, [&](auto& solver) {
-            solver.solve(data, first, last, chosen, solution, finished, stop);
+          Worker& own = *workers_[static_cast<std::size_t>(worker)];
+          own.prepare(chosen);
+          own.with(chosen, [&](auto& solver) {
+            solver.solve(problem, first, last, chosen, solution, finished, stop);
           });
         },
         method);

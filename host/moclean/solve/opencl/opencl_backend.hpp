@@ -48,12 +48,13 @@ class OpenClBackend final : public Backend {
   /// See Backend. Also throws DeviceError if one segment alone exceeds the memory limit, and
   /// ArgumentError for a tolerance below mixed_tolerance in mixed precision, and for any method but
   /// robust PCA in it.
-  Solution solve(const SegmentBatch& data, const Method& method,
+  Solution solve(const Problem& problem, const Method& method,
                  const Monitor& monitor = {}) override;
 
  private:
   class Worker;  // of one of the queues
 
+  // Of a method that is prepared.
   opencl::SegmentSize size_of(const SegmentBatch& data, Index b, const Method& method) const;
   opencl::BatchPlan plan_of(const SegmentBatch& data, const Method& method) const;
   void prepare_workers(const opencl::BatchPlan& plan);

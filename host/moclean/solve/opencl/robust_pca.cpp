@@ -343,13 +343,13 @@ void RobustPcaSolver<Real>::solve_active(Batch& batch, Memory& m, const RobustPc
 }
 
 template <class Real>
-void RobustPcaSolver<Real>::solve(const SegmentBatch& data, Index first, Index last,
+void RobustPcaSolver<Real>::solve(const Problem& problem, Index first, Index last,
                                   const RobustPca& method, Solution& solution,
                                   const Finished& finished, const std::stop_token& stop) {
-  Batch batch(device_, data, first, last);
+  Batch batch(device_, problem.data, first, last);
   Memory m(device_, batch, method, sweep_rows_);
   const std::vector<std::int32_t> all(batch.active().begin(), batch.active().end());
-  const std::vector<std::int32_t> incomplete = load(data, first, last, batch, m);
+  const std::vector<std::int32_t> incomplete = load(problem.data, first, last, batch, m);
   std::vector<std::int32_t> complete;
   std::ranges::set_difference(all, incomplete, std::back_inserter(complete));
   if (!incomplete.empty()) batch.select(complete);

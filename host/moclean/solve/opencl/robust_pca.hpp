@@ -27,8 +27,8 @@ class RobustPcaSolver {
   /// Called with the number of segments that finished since the last call.
   using Finished = std::function<void(Index)>;
 
-  /// Solves the segments [first, last) of `data` into the same segments of `solution`.
-  void solve(const SegmentBatch& data, Index first, Index last, const RobustPca& method,
+  /// Solves the segments [first, last) of `problem` into the same segments of `solution`.
+  void solve(const Problem& problem, Index first, Index last, const RobustPca& method,
              Solution& solution, const Finished& finished, const std::stop_token& stop);
 
  private:

@@ -99,16 +99,16 @@ void SpectralSolver::weigh(const SegmentBatch& data, Index first, Index last, co
   finished(last - first);
 }
 
-void SpectralSolver::solve(const SegmentBatch& data, Index first, Index last,
+void SpectralSolver::solve(const Problem& problem, Index first, Index last,
                            const TruncatedSvd& method, Solution& solution, const Finished& finished,
                            const std::stop_token& stop) {
-  weigh(data, first, last, method, solution, finished, stop);
+  weigh(problem.data, first, last, method, solution, finished, stop);
 }
 
-void SpectralSolver::solve(const SegmentBatch& data, Index first, Index last,
+void SpectralSolver::solve(const Problem& problem, Index first, Index last,
                            const SingularValueThresholding& method, Solution& solution,
                            const Finished& finished, const std::stop_token& stop) {
-  weigh(data, first, last, method, solution, finished, stop);
+  weigh(problem.data, first, last, method, solution, finished, stop);
 }
 
 }  // namespace moclean::opencl

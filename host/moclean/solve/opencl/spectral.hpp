@@ -27,10 +27,10 @@ class SpectralSolver {
     return bytes_of(rows, columns);
   }
 
-  /// Solves the segments [first, last) of `data` into the same segments of `solution`.
-  void solve(const SegmentBatch& data, Index first, Index last, const TruncatedSvd& method,
+  /// Solves the segments [first, last) of `problem` into the same segments of `solution`.
+  void solve(const Problem& problem, Index first, Index last, const TruncatedSvd& method,
              Solution& solution, const Finished& finished, const std::stop_token& stop);
-  void solve(const SegmentBatch& data, Index first, Index last,
+  void solve(const Problem& problem, Index first, Index last,
              const SingularValueThresholding& method, Solution& solution, const Finished& finished,
              const std::stop_token& stop);
 

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <span>
+#include <utility>
+#include <vector>
 
 #include "moclean/core/segment_batch.hpp"
 
@@ -21,6 +24,16 @@ inline std::span<const double> stacked_rows(const SegmentBatch& batch, Index fir
 
 inline std::span<double> stacked_rows(SegmentBatch& batch, Index first, Index last) {
   return rows_between<std::span<double>>(batch, first, last);
+}
+
+/// The segments [first, last) of a batch as one of their own.
+inline SegmentBatch segments_between(const SegmentBatch& batch, Index first, Index last) {
+  std::vector<Index> first_rows;
+  for (Index b = first; b <= last; ++b)
+    first_rows.push_back(batch.first_row(b) - batch.first_row(first));
+  SegmentBatch part(batch.columns(), std::move(first_rows));
+  std::ranges::copy(stacked_rows(batch, first, last), part.storage().begin());
+  return part;
 }
 
 }  // namespace moclean::opencl

@@ -232,10 +232,10 @@ Index TemporalRobustPcaSolver::retire(Run& run, const TemporalRobustPca& method)
   return done;
 }
 
-void TemporalRobustPcaSolver::solve(const SegmentBatch& data, Index first, Index last,
+void TemporalRobustPcaSolver::solve(const Problem& problem, Index first, Index last,
                                     const TemporalRobustPca& method, Solution& solution,
                                     const Finished& finished, const std::stop_token& stop) {
-  Run run(device_, banded_, data, first, last, method, jobs_);
+  Run run(device_, banded_, problem.data, first, last, method, jobs_);
   start(run, method);
   const Index trivial = run.batch.segments() - run.batch.active_count();
   if (trivial > 0) finished(trivial);

@@ -27,8 +27,8 @@ class TemporalRobustPcaSolver {
   /// Bytes of device memory a segment of this size takes.
   std::uint64_t memory_of(Index rows, Index columns, const TemporalRobustPca& method) const;
 
-  /// Solves the segments [first, last) of `data` into the same segments of `solution`.
-  void solve(const SegmentBatch& data, Index first, Index last, const TemporalRobustPca& method,
+  /// Solves the segments [first, last) of `problem` into the same segments of `solution`.
+  void solve(const Problem& problem, Index first, Index last, const TemporalRobustPca& method,
              Solution& solution, const Finished& finished, const std::stop_token& stop);
 
  private:

@@ -33,9 +33,9 @@ inline void download(const Buffer<float>& source, std::span<double> values) {
 template <class Real, class By>
 void upload(const SegmentBatch& data, Index first, Index last,
             const std::vector<std::int32_t>& replaced, const By& by, Buffer<Real>& target) {
-  SegmentBatch values = data;
-  for (const std::int32_t b : replaced) values.segment(first + b) = by(data.segment(first + b));
-  upload(stacked_rows(std::as_const(values), first, last), target);
+  SegmentBatch values = segments_between(data, first, last);
+  for (const std::int32_t b : replaced) values.segment(b) = by(data.segment(first + b));
+  upload(std::as_const(values).storage(), target);
 }
 
 }  // namespace moclean::opencl

@@ -113,8 +113,8 @@ int smooth(const Matrix& data, const Matrix& weights, const Eigen::VectorXd& pre
 }
 
 MatrixNormalSolution solve(const ConstMatrixRef& data, const MatrixNormal& method,
-                           const std::stop_token& stop, Index segment) {
-  MatrixNormalWindow window(data, method, segment);
+                           const std::stop_token& stop, const MotionPrior& prior) {
+  MatrixNormalWindow window(data, method, prior);
   MatrixNormalSolution solution;
   solution.outcome = {
       .iterations = 0, .rank = {}, .residual = 0, .converged = false, .fixed_steps = true};

@@ -5,6 +5,7 @@
 #include "moclean/core/matrix.hpp"
 #include "moclean/solve/backend.hpp"
 #include "moclean/solve/matrix_normal.hpp"
+#include "moclean/solve/motion_prior.hpp"
 
 namespace moclean::reference {
 
@@ -31,10 +32,10 @@ struct MatrixNormalSolution {
   SegmentOutcome outcome;
 };
 
-/// The motion of one window [frames x columns], NaN where data is missing; `segment` is its place
-/// in method.knowledge. A window of fewer than five frames
-/// has its gaps filled linearly, no more. Throws Cancelled soon after `stop` is requested.
+/// The motion of one window [frames x columns], NaN where data is missing. A window of
+/// fewer than five frames has its gaps filled linearly, no more. Throws Cancelled soon after `stop`
+/// is requested.
 MatrixNormalSolution solve(const ConstMatrixRef& data, const MatrixNormal& method,
-                           const std::stop_token& stop = {}, Index segment = 0);
+                           const std::stop_token& stop = {}, const MotionPrior& prior = {});
 
 }  // namespace moclean::reference

@@ -16,12 +16,12 @@ namespace moclean {
 namespace {
 
 template <class M>
-auto solve_segment(const SegmentBatch& data, Index b, const M& method,
-                   const std::stop_token& stop) {
-  if constexpr (std::is_same_v<M, MatrixNormal>)
-    return reference::solve(data.segment(b), method, stop, b);
+auto solve_segment(const Problem& problem, Index b, const M& method, const std::stop_token& stop) {
+  const auto segment = problem.data.segment(b);
+  if constexpr (requires { M::takes_prior; })
+    return reference::solve(segment, method, stop, problem.prior(b));
   else
-    return reference::solve(data.segment(b), method, stop);
+    return reference::solve(segment, method, stop);
 }
 
 }  // namespace
@@ -35,10 +35,11 @@ std::string ReferenceBackend::name() const {
                      EIGEN_MINOR_VERSION, jobs_, jobs_ == 1 ? "thread" : "threads");
 }
 
-Solution ReferenceBackend::solve(const SegmentBatch& data, const Method& method,
+Solution ReferenceBackend::solve(const Problem& problem, const Method& method,
                                  const Monitor& monitor) {
   std::visit([](const auto& m) { check(m); }, method);
-  require_usable(data, method);
+  require_usable(problem, method);
+  const SegmentBatch& data = problem.data;
 
   Solution solution;
   solution.low_rank = SegmentBatch(data.columns(), data.first_rows());
@@ -54,7 +55,7 @@ Solution ReferenceBackend::solve(const SegmentBatch& data, const Method& method,
   for_each_index(data.segments(), jobs_, [&](Index b) {
     std::visit(
         [&](const auto& m) {
-          const auto segment = solve_segment(data, b, m, monitor.stop);
+          const auto segment = solve_segment(problem, b, m, monitor.stop);
           solution.low_rank.segment(b) = segment.low_rank;
           solution.sparse.segment(b) = segment.sparse;
           if constexpr (requires { segment.trusted; }) {

@@ -16,7 +16,7 @@ class ReferenceBackend final : public Backend {
   std::string name() const override;
 
   /// Reports after every segment. A stop request takes effect within one iteration of each thread.
-  Solution solve(const SegmentBatch& data, const Method& method,
+  Solution solve(const Problem& problem, const Method& method,
                  const Monitor& monitor = {}) override;
 
  private:
