@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "moclean/denoise/sample_status.hpp"
-#include "moclean/io/file.hpp"
+#include "moclean/formats/file.hpp"
 
 #include "cli/backend_report.hpp"
 #include "cli/tuning_cache.hpp"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "moclean/denoise/denoiser.hpp"
-#include "moclean/io/file.hpp"
+#include "moclean/formats/file.hpp"
 #include "moclean/report/report.hpp"
 
 #include "cli/busy_clock.hpp"
