@@ -11,13 +11,13 @@
 
 #include <benchmark/benchmark.h>
 
-#include "moclean/io/amc.hpp"
-#include "moclean/io/bvh.hpp"
-#include "moclean/io/csv.hpp"
-#include "moclean/io/file.hpp"
-#include "moclean/io/find_skeleton.hpp"
-#include "moclean/io/npy.hpp"
-#include "moclean/io/read_write.hpp"
+#include "moclean/formats/amc.hpp"
+#include "moclean/formats/bvh.hpp"
+#include "moclean/formats/csv.hpp"
+#include "moclean/formats/file.hpp"
+#include "moclean/formats/find_skeleton.hpp"
+#include "moclean/formats/npy.hpp"
+#include "moclean/formats/read_write.hpp"
 
 namespace moclean::bench {
 namespace {

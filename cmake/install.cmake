@@ -9,7 +9,7 @@ install(TARGETS moclean EXPORT moclean-targets ARCHIVE DESTINATION ${CMAKE_INSTA
 # tools behind the readers, the text of the kernels.
 set(internal_headers
     "solve/(reference|opencl)/(robust_pca|robust_pca_memory|robust_pca_work|svd|spectral|matrix_completion|stacked_rows)"
-    "io/(text_scanner|plain_number|row_collector|frame_rate|extension)" "filter/observed"
+    "formats/(text_scanner|plain_number|row_collector|frame_rate|extension)" "filter/observed"
     "metric/same_shape" "experiment/toml_section" "device/kernel_source" "report/(assets|figures|quantised)")
 list(JOIN internal_headers "|" internal_headers)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/host/moclean DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
-#include "moclean/io/read_write.hpp"
+#include "moclean/formats/read_write.hpp"
 #include "moclean/noise/noise.hpp"
 #include "moclean/segment/plan.hpp"
 

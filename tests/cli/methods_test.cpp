@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 
 #include "moclean/denoise/chain.hpp"
-#include "moclean/io/read_write.hpp"
+#include "moclean/formats/read_write.hpp"
 #include "moclean/noise/noise.hpp"
 #include "moclean/solve/reference/reference_backend.hpp"
 

@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #include "moclean/core/error.hpp"
-#include "moclean/io/read_write.hpp"
+#include "moclean/formats/read_write.hpp"
 #include "moclean/run/memory_budget.hpp"
 #include "moclean/solve/reference/reference_backend.hpp"
 

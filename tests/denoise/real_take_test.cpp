@@ -3,7 +3,7 @@
 
 #include "moclean/denoise/agreement.hpp"
 #include "moclean/denoise/low_rank.hpp"
-#include "moclean/io/read_write.hpp"
+#include "moclean/formats/read_write.hpp"
 #include "moclean/metric/metric.hpp"
 #include "moclean/noise/noise.hpp"
 

@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 
 #include "moclean/core/error.hpp"
-#include "moclean/io/read_write.hpp"
+#include "moclean/formats/read_write.hpp"
 
-#include "io/temporary_folder.hpp"
+#include "formats/temporary_folder.hpp"
 #include "support/synthetic_walk.hpp"
 
 namespace moclean::test {

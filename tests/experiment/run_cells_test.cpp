@@ -9,7 +9,7 @@
 #include "moclean/solve/reference/reference_backend.hpp"
 
 #include "experiment/small_experiment.hpp"
-#include "io/temporary_folder.hpp"
+#include "formats/temporary_folder.hpp"
 
 namespace moclean::test {
 namespace {

@@ -8,7 +8,7 @@
 
 #include <unistd.h>
 
-#include "moclean/io/read_write.hpp"
+#include "moclean/formats/read_write.hpp"
 
 namespace moclean::test {
 

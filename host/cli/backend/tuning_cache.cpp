@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
-#include "moclean/io/file.hpp"
+#include "moclean/formats/file.hpp"
 
 namespace moclean::cli {
 namespace {

@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "moclean/io/read_write.hpp"
+#include "moclean/formats/read_write.hpp"
 #include "moclean/run/inputs.hpp"
 #include "moclean/run/outputs.hpp"
 

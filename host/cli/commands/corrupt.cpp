@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
-#include "moclean/io/read_write.hpp"
+#include "moclean/formats/read_write.hpp"
 #include "moclean/metric/metric.hpp"
 #include "moclean/noise/noise.hpp"
 #include "moclean/run/inputs.hpp"

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "moclean/io/read_skeleton.hpp"
+#include "moclean/formats/read_skeleton.hpp"
 
 namespace moclean::cli {
 namespace {

@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
-#include "moclean/io/read_skeleton.hpp"
-#include "moclean/io/read_write.hpp"
+#include "moclean/formats/read_skeleton.hpp"
+#include "moclean/formats/read_write.hpp"
 #include "moclean/metric/figures.hpp"
 #include "moclean/metric/metric.hpp"
 #include "moclean/run/inputs.hpp"

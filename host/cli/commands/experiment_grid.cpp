@@ -7,7 +7,7 @@
 #include "moclean/experiment/grid_config.hpp"
 #include "moclean/experiment/run_cells.hpp"
 #include "moclean/experiment/summary.hpp"
-#include "moclean/io/file.hpp"
+#include "moclean/formats/file.hpp"
 #include "moclean/run/outputs.hpp"
 
 #include "cli/backend/open_backend.hpp"

@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "moclean/io/extension.hpp"
+#include "moclean/formats/extension.hpp"
 #include "moclean/run/inputs.hpp"
 
 #include "cli/commands/commands.hpp"

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "moclean/denoise/sample_status.hpp"
-#include "moclean/io/file.hpp"
+#include "moclean/formats/file.hpp"
 
 #include "cli/backend/tuning_cache.hpp"
 #include "cli/printing/backend_report.hpp"

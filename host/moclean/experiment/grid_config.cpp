@@ -7,9 +7,9 @@
 #include <sstream>
 
 #include "moclean/experiment/toml_section.hpp"
-#include "moclean/io/file.hpp"
-#include "moclean/io/read_skeleton.hpp"
-#include "moclean/io/read_write.hpp"
+#include "moclean/formats/file.hpp"
+#include "moclean/formats/read_skeleton.hpp"
+#include "moclean/formats/read_write.hpp"
 
 namespace moclean {
 namespace {

@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
-#include "moclean/io/extension.hpp"
-#include "moclean/io/read_write.hpp"
+#include "moclean/formats/extension.hpp"
+#include "moclean/formats/read_write.hpp"
 #include "moclean/solve/backend.hpp"
 
 namespace moclean {

@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "moclean/core/error.hpp"
-#include "moclean/io/extension.hpp"
+#include "moclean/formats/extension.hpp"
 
 namespace moclean {
 namespace {

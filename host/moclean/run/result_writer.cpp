@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "moclean/core/error.hpp"
-#include "moclean/io/read_write.hpp"
+#include "moclean/formats/read_write.hpp"
 
 namespace moclean {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "moclean/denoise/denoiser.hpp"
-#include "moclean/io/file.hpp"
+#include "moclean/formats/file.hpp"
 #include "moclean/report/report.hpp"
 #include "moclean/run/busy_clock.hpp"
 #include "moclean/run/memory_budget.hpp"

@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include <moclean/denoise/low_rank.hpp>
-#include <moclean/io/read_write.hpp>
+#include <moclean/formats/read_write.hpp>
 #include <moclean/solve/opencl/opencl_backend.hpp>
 #include <moclean/solve/reference/reference_backend.hpp>
 

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "moclean/formats/asf.hpp"
+
+namespace moclean {
+
+/// Reads Acclaim motion (AMC) text over its skeleton; `file` names it in messages. Throws
+/// FileError.
+///
+/// Frames are numbered without a gap, from any first number; every frame gives all degrees of
+/// freedom of every bone that has any (`:FULLY-SPECIFIED`), bones in any order. Angles are in the
+/// skeleton's unit unless the file says `:DEGREES` or `:RADIANS`. Lengths stay as written, in
+/// "ASF units"; the format states no frame rate.
+SkeletonMotion parse_amc(std::string_view text, const std::filesystem::path& file,
+                         const AcclaimSkeleton& skeleton);
+
+}  // namespace moclean
