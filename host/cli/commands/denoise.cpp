@@ -1,22 +1,26 @@
 #include <algorithm>
 #include <cstdio>
+#include <functional>
 #include <memory>
+#include <optional>
+#include <variant>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "moclean/report/report.hpp"
+#include "moclean/run/engine.hpp"
 #include "moclean/run/outputs.hpp"
 #include "moclean/run/process_memory.hpp"
 #include "moclean/run/truth.hpp"
 
 #include "cli/backend/open_backend.hpp"
 #include "cli/commands/commands.hpp"
-#include "cli/commands/pipeline.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/options/denoise_options.hpp"
 #include "cli/printing/backend_report.hpp"
 #include "cli/printing/json_record.hpp"
+#include "cli/printing/progress_line.hpp"
 
 namespace moclean::cli {
 namespace {
@@ -93,34 +97,71 @@ ExitCode warn_if_not_converged(const std::vector<TakeReport>& takes) {
   return code;
 }
 
+// The lines of progress of a run.
+class RunProgress {
+ public:
+  explicit RunProgress(const DenoiseOptions& options) : solving_("solving", !options.quiet) {
+    if (options.verify) verifying_.emplace("verifying", !options.quiet);
+  }
+
+  void operator()(const RunEvent& event) {
+    const auto* solved = std::get_if<SegmentsSolved>(&event);
+    if (!solved) return;
+    ProgressLine& line = solved->task == SolveTask::verifying ? *verifying_ : solving_;
+    line.show(solved->progress,
+              solved->total_is_exact ? ProgressTotal::exact : ProgressTotal::estimated);
+  }
+
+ private:
+  ProgressLine solving_;
+  std::optional<ProgressLine> verifying_;
+};
+
+Job job_of(const DenoiseOptions& options) {
+  Job job{.files = expand_folders(options.inputs),
+          .reading = options.reading,
+          .truth_frames = options.truth_frames,
+          .chain = options.chain,
+          .max_gap = options.max_gap,
+          .keep_observed = options.keep_observed,
+          .verify = options.verify,
+          .jobs = options.jobs,
+          .memory_limit = options.memory_limit,
+          .overlap = options.overlap};
+  job.outputs = plan_outputs({.inputs = options.inputs,
+                              .files = job.files,
+                              .output = options.output,
+                              .outliers = options.outliers,
+                              .mask = options.mask,
+                              .sigma = options.sigma,
+                              .report = options.report,
+                              .format = options.format});
+  if (!options.truth.empty()) job.truths = truths_of(options.truth, job.files);
+  return job;
+}
+
+RunReport run_shown(const Job& job, const DenoiseOptions& options, Backend& backend,
+                    const std::stop_token& stop) {
+  RunProgress progress(options);
+  return run_job(job, backend, std::ref(progress), stop);
+}
+
 ExitCode run(DenoiseOptions options) {
   if (options.memory_limit != 0) return_freed_memory();  // whoever sets a limit means it
   complete(options);
   const Interrupt interrupt;  // before the threads of the OpenCL driver
   if (!options.report.empty()) require_report();
-  Job job{.options = options, .files = expand_folders(options.inputs)};
-  job.plan = plan_outputs({.inputs = options.inputs,
-                           .files = job.files,
-                           .output = options.output,
-                           .outliers = options.outliers,
-                           .mask = options.mask,
-                           .sigma = options.sigma,
-                           .report = options.report,
-                           .format = options.format});
-  if (!options.truth.empty()) job.truths = truths_of(options.truth, job.files);
+  const Job job = job_of(options);
   if (!options.json.empty() && options.json != "-") require_writable(options.json);
 
   OpenedBackend opened = open_backend(options, needs_backend(options.chain),
                                       options.profile ? Profiling::on : Profiling::off);
-  job.backend = opened.report.name;
-  job.compute_units = opened.device ? opened.device->info().compute_units : options.jobs;
-  job.on_gpu = opened.device && opened.device->info().kind == DeviceKind::gpu;
-  const RunReport report = run_pipeline(job, *opened.backend, interrupt.token());
+  const RunReport report = run_shown(job, options, *opened.backend, interrupt.token());
 
   if (options.profile)
     opened.report.profile = profile_of(*opened.device, options, report.seconds.solve);
   if (!options.json.empty()) write_json(options.json, json_record(options, opened.report, report));
-  if (options.reports()) print_report(report, job.plan, opened.report);
+  if (options.reports()) print_report(report, job.outputs, opened.report);
   warn_of_unobserved(report.takes);
   tell_of_changes(report.takes);
   return warn_if_not_converged(report.takes);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/core/version.hpp"
 #include "moclean/experiment/grid_config.hpp"
 #include "moclean/experiment/run_cells.hpp"
 #include "moclean/experiment/summary.hpp"
@@ -64,7 +65,7 @@ void compute(Grid& grid, const GridOptions& options, CellResults& kept, std::sto
   grid.results =
       run_cells(grid.experiment, grid.cells,
                 {.backend = opened.backend.get(),
-                 .program = "moclean " MOCLEAN_VERSION,
+                 .program = fmt::format("moclean {}", version()),
                  .device = grid.device + ", " + to_string(options.precision),
                  .jobs = options.jobs,
                  .memory = options.memory_limit / 2,
@@ -119,7 +120,7 @@ Json axes_record(const Grid& grid) {
 }
 
 Json grid_record(const Grid& grid, const GridOptions& options) {
-  Json record = {{"version", MOCLEAN_VERSION},
+  Json record = {{"version", version()},
                  {"device", grid.device},
                  {"precision", to_string(options.precision)},
                  {"config", options.config.string()}};
@@ -158,7 +159,7 @@ Report grid_report(const Grid& grid, const GridOptions& options) {
   add("seeds", fmt::format("{}", fmt::join(grid.experiment.seeds, ", ")));
   add("computed on", grid.device);
   add("precision", to_string(options.precision));
-  add("moclean", MOCLEAN_VERSION);
+  add("moclean", std::string(version()));
   return report;
 }
 

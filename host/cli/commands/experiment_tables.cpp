@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "moclean/core/version.hpp"
 #include "moclean/experiment/run_cells.hpp"
 #include "moclean/run/outputs.hpp"
 
@@ -68,7 +69,7 @@ Json row_record(const PaperExperiment& paper, std::span<const CellResult> result
 
 Json table_record(const TableOptions& options, const std::string& device,
                   const PaperExperiment& paper, std::span<const CellResult> results) {
-  Json record = {{"version", MOCLEAN_VERSION},
+  Json record = {{"version", version()},
                  {"device", device},
                  {"precision", to_string(options.precision)},
                  {"table", static_cast<int>(options.table)},
@@ -101,7 +102,7 @@ Report table_report(const TableOptions& options, const std::string& device,
                                                options.seeds)},
                          {"computed on", device},
                          {"precision", to_string(options.precision)},
-                         {"moclean", MOCLEAN_VERSION}}};
+                         {"moclean", std::string(version())}}};
 }
 
 }  // namespace

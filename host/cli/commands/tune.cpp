@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/core/version.hpp"
 #include "moclean/noise/motion_like.hpp"
 #include "moclean/run/outputs.hpp"
 
@@ -34,7 +35,7 @@ void print_tried(const TriedTuning& tried) {
 Json record_of(const TuneOptions& options, Index segments, const DeviceInfo& device,
                const ContestReport& report, const std::filesystem::path& file) {
   Json record;
-  record["version"] = MOCLEAN_VERSION;
+  record["version"] = version();
   record["device"] = device.name;
   record["platform"] = device.platform_name;
   record["driver"] = device.driver;

@@ -90,7 +90,7 @@ void complete_backend(BackendOptions& options) {
   if (mixed && options.products && *options.products != ProductPath::own)
     throw ArgumentError("--precision mixed works with --products own only, not with " +
                         to_string(*options.products));
-  if (options.memory_limit == 0) options.memory_limit = physical_memory() / 4;
+  if (options.memory_limit == 0) options.memory_limit = default_memory_limit();
 }
 
 }  // namespace moclean::cli

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "moclean/core/version.hpp"
 #include "moclean/denoise/sample_status.hpp"
 #include "moclean/formats/file.hpp"
 
@@ -126,7 +127,7 @@ Json take_record(const TakeReport& take) {
 Json json_record(const DenoiseOptions& options, const BackendReport& backend,
                  const RunReport& run) {
   Json record;
-  record["version"] = MOCLEAN_VERSION;
+  record["version"] = version();
   record["device"] = backend.name;
   record["precision"] = to_string(options.precision);
   if (backend.tuning) record["tuning"] = tuning_record(*backend.tuning);
@@ -139,7 +140,7 @@ Json json_record(const DenoiseOptions& options, const BackendReport& backend,
                        {"write", run.seconds.write},
                        {"total", run.seconds.total}};
   record["memory"] = {{"limit", options.memory_limit}, {"peak", run.peak_memory}};
-  record["groups"] = run.groups;
+  record["groups"] = run.batches;
   record["inputs"] = Json::array();
   for (const TakeReport& take : run.takes) record["inputs"].push_back(take_record(take));
   if (backend.profile) record["profile"] = profile_record(*backend.profile);

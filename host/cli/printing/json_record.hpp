@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "moclean/run/take_report.hpp"
+#include "moclean/run/run_report.hpp"
 
 #include "cli/options/denoise_options.hpp"
 

@@ -7,6 +7,9 @@ namespace moclean {
 /// Bytes of memory the machine has.
 std::uint64_t physical_memory();
 
+/// A quarter of it: what a run may take where nobody says otherwise.
+std::uint64_t default_memory_limit();
+
 /// Most bytes of memory this process has had so far (resident set).
 std::uint64_t peak_memory();
 

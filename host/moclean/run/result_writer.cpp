@@ -40,8 +40,8 @@ NewFolders::~NewFolders() {
     fs::remove(*folder, ignored);
 }
 
-ResultWriter::ResultWriter(const OutputPlan& plan, int threads)
-    : plan_(plan), folders_(plan.folders), take_seconds_(plan.clean.size()) {
+ResultWriter::ResultWriter(const OutputPlan& plan, int threads, RunLog& log)
+    : plan_(plan), log_(log), folders_(plan.folders), take_seconds_(plan.clean.size()) {
   const auto count = std::min(static_cast<std::size_t>(threads), plan.clean.size());
   for (std::size_t t = 0; t < count; ++t) threads_.emplace_back([this] { work(); });
 }
@@ -63,8 +63,11 @@ void ResultWriter::finish() {
 }
 
 void ResultWriter::commit() {
-  for (AtomicFile& file : written_) file.commit();
-  folders_.keep();
+  for (auto& [take, files] : waiting_) {
+    for (AtomicFile& file : files) file.commit();
+    log_.send(TakeWritten{take});
+  }
+  if (log_.all_or_nothing()) folders_.keep();  // else those that are not empty stay
 }
 
 // After a failure the takes that wait are dropped all the same: others wait for their memory.
@@ -75,7 +78,7 @@ void ResultWriter::work() {
         const std::lock_guard lock(mutex_);
         if (failure_) continue;
       }
-      write(*take);
+      log_.attempt(take->index, [&] { keep(take->index, written(*take)); });
     } catch (...) {
       const std::lock_guard lock(mutex_);
       if (!failure_) failure_ = std::current_exception();
@@ -83,7 +86,8 @@ void ResultWriter::work() {
   }
 }
 
-void ResultWriter::write(SolvedTake& take) {
+// Complete, under temporary names.
+std::vector<AtomicFile> ResultWriter::written(SolvedTake& take) {
   const BusyClock::Work work(clock_);
   std::vector<AtomicFile> files;
   files.push_back(write_temporary(plan_.clean[take.index], take.clip));
@@ -99,8 +103,17 @@ void ResultWriter::write(SolvedTake& take) {
     file.close();
   }
   take_seconds_[take.index] = work.seconds();
+  return files;
+}
+
+void ResultWriter::keep(std::size_t take, std::vector<AtomicFile> files) {
+  if (!log_.all_or_nothing()) {
+    for (AtomicFile& file : files) file.commit();
+    log_.send(TakeWritten{take});
+    return;
+  }
   const std::lock_guard lock(mutex_);
-  for (AtomicFile& file : files) written_.push_back(std::move(file));
+  waiting_.emplace(take, std::move(files));
 }
 
 void ResultWriter::rethrow_failure() {

@@ -2,6 +2,7 @@
 
 #include <exception>
 #include <filesystem>
+#include <map>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -13,6 +14,7 @@
 #include "moclean/run/busy_clock.hpp"
 #include "moclean/run/memory_budget.hpp"
 #include "moclean/run/outputs.hpp"
+#include "moclean/run/run_log.hpp"
 #include "moclean/run/work_queue.hpp"
 
 namespace moclean {
@@ -45,24 +47,24 @@ class NewFolders {
   std::vector<std::filesystem::path> created_;  // outer before inner
 };
 
-/// Writes results on threads of its own, under temporary names until commit().
-///
-/// Without commit() the destructor removes everything that was written.
+/// Writes results on threads of its own: under temporary names until commit() where the run is all
+/// or nothing, and without commit() the destructor removes everything that was written; else the
+/// results of a take get their names as soon as they are complete.
 class ResultWriter {
  public:
-  /// `plan` outlives the writer. Throws FileError if a folder cannot be created.
-  ResultWriter(const OutputPlan& plan, int threads);
+  /// `plan` and `log` outlive the writer. Throws FileError if a folder cannot be created.
+  ResultWriter(const OutputPlan& plan, int threads, RunLog& log);
   ~ResultWriter();
   ResultWriter(const ResultWriter&) = delete;
   ResultWriter& operator=(const ResultWriter&) = delete;
 
-  /// Returns at once. Throws what writing an earlier take threw.
+  /// Returns at once. Throws what writing an earlier take threw, if that ends the run.
   void put(SolvedTake take);
 
-  /// Waits until everything is written; no put() after it. Throws what writing threw.
+  /// Waits until everything is written; no put() after it. Throws likewise.
   void finish();
 
-  /// Puts all files in their places; after finish(). Throws FileError.
+  /// Puts the files in their places that are not yet there; after finish(). Throws FileError.
   void commit();
 
   double seconds() const { return clock_.seconds(); }  ///< wall time some take was being written
@@ -70,16 +72,18 @@ class ResultWriter {
 
  private:
   void work();
-  void write(SolvedTake& take);
+  std::vector<AtomicFile> written(SolvedTake& take);
+  void keep(std::size_t take, std::vector<AtomicFile> files);
   void rethrow_failure();
 
   const OutputPlan& plan_;
+  RunLog& log_;
   NewFolders folders_;
   BusyClock clock_;
   std::vector<double> take_seconds_;
   WorkQueue<SolvedTake> queue_;
-  std::mutex mutex_;  // of the next two
-  std::vector<AtomicFile> written_;
+  std::mutex mutex_;                                        // of the next two
+  std::map<std::size_t, std::vector<AtomicFile>> waiting_;  // per take, for commit()
   std::exception_ptr failure_;
   std::vector<std::jthread> threads_;  // last: they use the others
 };

@@ -29,24 +29,18 @@ Index segments_of(const Segmentation& segmentation, const Clip& clip) {
 
 }  // namespace
 
-std::uint64_t TakeGroup::bytes() const {
-  return std::transform_reduce(memory.begin(), memory.end(), std::uint64_t{0}, std::plus{},
-                               [](const MemoryShare& share) { return share.bytes(); });
-}
-
-TakeReader::TakeReader(const std::vector<fs::path>& files, const InputOptions& options,
-                       const GroupRules& rules, int threads, MemoryBudget& budget,
+TakeReader::TakeReader(const Job& job, const BatchRules& rules, MemoryBudget& budget, RunLog& log,
                        std::stop_token stop)
-    : files_(files),
-      options_(options),
+    : job_(job),
       rules_(rules),
       budget_(budget),
-      file_bytes_(sizes_of(files)),
+      log_(log),
+      file_bytes_(sizes_of(job.files)),
       all_bytes_(std::reduce(file_bytes_.begin(), file_bytes_.end())),
-      promises_(files.size()),
+      promises_(job.files.size()),
       stopped_(std::move(stop), [this] { stop_.request_stop(); }) {
   for (auto& promise : promises_) takes_.push_back(promise.get_future());
-  const auto count = std::min(static_cast<std::size_t>(threads), files.size());
+  const auto count = std::min(static_cast<std::size_t>(job.jobs), job.files.size());
   for (std::size_t t = 0; t < count; ++t) threads_.emplace_back([this] { read_ahead(); });
 }
 
@@ -54,14 +48,14 @@ TakeReader::~TakeReader() { stop_.request_stop(); }
 
 // Text takes about as many bytes as the samples that become of it; read() corrects the estimate.
 std::uint64_t TakeReader::expected_bytes(std::size_t index) const {
-  return rules_.copies * file_bytes_[index];
+  return rules_.copies_solving * file_bytes_[index];
 }
 
 void TakeReader::read_ahead() {
   for (;;) {
     std::unique_lock admission(admission_);
     const std::size_t index = next_++;
-    if (index >= files_.size()) return;
+    if (index >= job_.files.size()) return;
     try {
       MemoryShare memory = budget_.take(expected_bytes(index), stop_.get_token());
       admission.unlock();
@@ -76,49 +70,54 @@ TakeReader::Take TakeReader::read(std::size_t index, MemoryShare memory) {
   const BusyClock::Work work(clock_);
   require_room(index, file_bytes_[index]);
   Take take;
-  take.clip = read_solvable(files_[index], options_, rules_.needs);
+  take.clip = read_solvable(job_.files[index], job_.reading, rules_.needs);
   const auto samples = static_cast<std::uint64_t>(take.clip.samples.size()) * sizeof(double);
-  require_room(index, rules_.copies * samples);
-  memory.resize(rules_.copies * samples);
+  require_room(index, rules_.copies_solving * samples);
+  memory.resize(rules_.copies_solving * samples);
   take.memory = std::move(memory);
   take.seconds = work.seconds();
+  log_.send(TakeRead{index});
   return take;
 }
 
 void TakeReader::require_room(std::size_t index, std::uint64_t bytes) const {
   if (bytes > budget_.limit())
     throw FileError(
-        files_[index],
+        job_.files[index],
         fmt::format("needs {} of memory, but --memory-limit leaves {} for recordings; raise it, or "
                     "use part of the recording (--frames)",
                     byte_text(bytes), byte_text(budget_.limit())));
 }
 
-// Never waits for a take that cannot be read before the group is solved: what the group and the
+// Never waits for a take that cannot be read before the batch is solved: what the batch and the
 // next take need together is far below the budget, and all else in it is given back by the writer.
-bool TakeReader::takes_another(const TakeGroup& group, std::uintmax_t file_bytes) const {
+bool TakeReader::takes_another(const TakeBatch& batch, std::uintmax_t file_bytes) const {
   if (at_end()) return false;
-  if (group.clips.empty()) return true;
-  if (group.bytes() + expected_bytes(given_) > budget_.limit() / 3) return false;
+  if (batch.size() == 0) return true;
+  if (batch.bytes() + expected_bytes(given_) > budget_.limit() / 3) return false;
   const bool is_quarter = 4 * file_bytes >= all_bytes_;
-  return group.segments < (is_quarter ? rules_.least_segments : rules_.full_segments);
+  return batch.segments() <
+         (is_quarter ? rules_.backend.least_segments : rules_.backend.full_segments);
 }
 
-TakeGroup TakeReader::next() {
-  TakeGroup group;
-  group.first = given_;
+TakeBatch TakeReader::next() {
+  TakeBatch batch;
   std::uintmax_t file_bytes = 0;
-  while (takes_another(group, file_bytes)) {
-    Take take = takes_[given_].get();
-    group.segments += segments_of(rules_.segmentation, take.clip);
-    group.clips.push_back(std::move(take.clip));
-    group.read_seconds.push_back(take.seconds);
-    group.memory.push_back(std::move(take.memory));
+  while (takes_another(batch, file_bytes)) {
+    const std::size_t index = given_;
+    log_.attempt(index, [&] {
+      Take take = takes_[index].get();
+      batch.takes.push_back({.index = index,
+                             .segments = segments_of(rules_.segmentation, take.clip),
+                             .read_seconds = take.seconds,
+                             .memory = std::move(take.memory)});
+      batch.clips.push_back(std::move(take.clip));
+    });
     file_bytes += file_bytes_[given_++];
   }
   given_bytes_ += file_bytes;
-  given_segments_ += group.segments;
-  return group;
+  given_segments_ += batch.segments();
+  return batch;
 }
 
 Index TakeReader::expected_segments() const {

@@ -13,7 +13,7 @@
 
 namespace moclean {
 
-/// What --verify found for one take.
+/// What Job::verify found for one take.
 struct Verification {
   Agreement agreement;
   AgreementBounds bounds;         ///< what it was to keep
@@ -27,10 +27,11 @@ struct TruthReport {
   double fd_clean = 0;
 };
 
-/// One take of a run of `moclean denoise`.
+/// One take of a run.
 struct TakeReport {
   std::filesystem::path file;
-  std::string unit;  ///< of length, as the file states it; empty where it does not
+  std::string failure = {};  ///< why nothing was written for it; empty if all was
+  std::string unit;          ///< of length, as the file states it; empty where it does not
   Index frames = 0;
   Index columns = 0;
   double read_seconds = 0;
@@ -61,11 +62,11 @@ struct StageSeconds {
 struct RunReport {
   std::vector<TakeReport> takes;  ///< in the order of the files
   StageSeconds seconds;
-  Index groups = 0;               ///< of takes that were solved together
+  Index batches = 0;              ///< of takes that were solved together
   std::uint64_t peak_memory = 0;  ///< bytes, of the whole process
 };
 
-/// What --verify found, in one line that starts with the file's name.
+/// What Job::verify found, in one line that starts with the file's name.
 std::string agreement_line(const TakeReport& take);
 
 /// Whether a take was changed so much that its user should hear of it: more than 2 % of its samples

@@ -1,4 +1,4 @@
-#include "moclean/run/take_report.hpp"
+#include "moclean/run/run_report.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,12 +1,14 @@
-#include "cli/commands/denoise_report.hpp"
+#include "moclean/run/take_page.hpp"
 
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "moclean/core/version.hpp"
 #include "moclean/formats/read_skeleton.hpp"
+#include "moclean/linalg/precision.hpp"
 
-namespace moclean::cli {
+namespace moclean {
 namespace {
 
 std::string frames_text(const FrameRange& range) {
@@ -35,7 +37,7 @@ std::string lambda_text(const RobustPca& method) {
 }  // namespace
 
 std::vector<int> parents_of(const Job& job, std::size_t take, const Clip& noisy) {
-  const ReadOptions reading{.skeleton = job.options.reading.skeleton, .rate = 0};
+  const ReadOptions reading{.skeleton = job.reading.skeleton, .rate = 0};
   std::vector<std::filesystem::path> files = {job.files[take]};
   if (!job.truths.empty()) files.push_back(job.truths[take]);
   for (const std::filesystem::path& file : files) {
@@ -47,19 +49,18 @@ std::vector<int> parents_of(const Job& job, std::size_t take, const Clip& noisy)
   return {};
 }
 
-Report denoise_report(const Job& job, const TakeReport& take, ReportTake parts) {
-  const DenoiseOptions& options = job.options;
+Report take_page(const Job& job, const Backend& backend, const TakeReport& take, ReportTake parts) {
   Report report{.title = take.file.filename().string(), .take = std::move(parts)};
   const auto add = [&](const char* name, std::string value) {
     report.parameters.emplace_back(name, std::move(value));
   };
   add("input", take.file.string());
   if (take.truth) add("truth", take.truth->file.string());
-  if (options.reading.frames.first || options.reading.frames.last)
-    add("frames", frames_text(options.reading.frames));
-  if (options.truth_frames) add("frames of the truth", frames_text(*options.truth_frames));
-  add("method", to_string(options.chain));
-  if (const LowRank* step = first_low_rank(options.chain)) {
+  if (job.reading.frames.first || job.reading.frames.last)
+    add("frames", frames_text(job.reading.frames));
+  if (job.truth_frames) add("frames of the truth", frames_text(*job.truth_frames));
+  add("method", to_string(job.chain));
+  if (const LowRank* step = first_low_rank(job.chain)) {
     add("segmentation", segmentation_text(step->segmentation));
     if (const auto* method = std::get_if<RobustPca>(&step->method)) {
       add("lambda", lambda_text(*method));
@@ -69,11 +70,11 @@ Report denoise_report(const Job& job, const TakeReport& take, ReportTake parts) 
       add("order", to_string(method->order));
     }
   }
-  add("computed on", job.backend);
-  add("precision", to_string(options.precision));
+  add("computed on", backend.name());
+  add("precision", to_string(backend.traits().mixed ? Precision::mixed : Precision::f64));
   add("seconds to solve", fmt::format("{:.3f}", take.solve_seconds));
-  add("moclean", MOCLEAN_VERSION);
+  add("moclean", std::string(version()));
   return report;
 }
 
-}  // namespace moclean::cli
+}  // namespace moclean
