@@ -8,7 +8,7 @@
 
 #include "moclean/core/error.hpp"
 
-#include "cli/commands.hpp"
+#include "cli/commands/commands.hpp"
 
 namespace moclean::cli {
 namespace {

@@ -1,6 +1,6 @@
 // The stages of `moclean denoise` with a backend that is quick, keeps count, and fails on demand.
 
-#include "cli/pipeline.hpp"
+#include "cli/commands/pipeline.hpp"
 
 #include <functional>
 #include <thread>
@@ -13,6 +13,7 @@
 
 #include "moclean/core/error.hpp"
 #include "moclean/formats/read_write.hpp"
+#include "moclean/run/memory_budget.hpp"
 #include "moclean/solve/reference/reference_backend.hpp"
 
 #include "cli/program.hpp"

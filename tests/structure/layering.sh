@@ -23,6 +23,7 @@ declare -A may_include=(
   [moclean/denoise]='moclean/core moclean/motion moclean/body moclean/segment moclean/filter moclean/solve'
   [moclean/experiment]='moclean/core moclean/motion moclean/formats moclean/noise moclean/metric moclean/denoise moclean/solve'
   [moclean/report]='moclean/core moclean/motion moclean/metric moclean/denoise'
+  [moclean/run]='moclean/core moclean/motion moclean/formats moclean/segment moclean/filter moclean/solve moclean/solve/reference moclean/metric moclean/denoise moclean/report'
   [cli]='*'
   [python]='*'
 )
@@ -44,6 +45,8 @@ may_catch=(
   'moclean/device/device.cpp: an ICD without platforms or devices throws; that is an empty list'
   'moclean/experiment/grid_config.cpp: gives the error of a specification its file and line'
   'moclean/core/parallel.hpp: carries an exception from a thread to the caller'
+  'moclean/run/take_reader.cpp: carries what reading a take threw to who asks for the take'
+  'moclean/run/result_writer.cpp: carries the first exception of its threads to the caller'
   'moclean/solve/opencl/concurrent.cpp: carries the first exception of its threads to the caller'
 )
 

@@ -1,0 +1,50 @@
+#include "moclean/run/truth.hpp"
+
+#include <array>
+
+#include <fmt/format.h>
+
+#include "moclean/core/error.hpp"
+
+namespace moclean {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path truth_in(const fs::path& folder, const fs::path& file) {
+  for (const char* kind : {".bvh", ".amc", ".csv", ".npy"}) {
+    const fs::path candidate = folder / (file.stem() += kind);
+    if (fs::exists(candidate)) return candidate;
+  }
+  throw FileError(folder, fmt::format("holds no truth of {}: expected {} with .bvh, .amc, .csv or "
+                                      ".npy",
+                                      file.string(), file.stem().string()));
+}
+
+}  // namespace
+
+std::vector<fs::path> truths_of(const fs::path& truth, const std::vector<fs::path>& files) {
+  if (!fs::exists(truth)) throw FileError(truth, "there is no such file or folder");
+  if (!fs::is_directory(truth)) {
+    if (files.size() > 1)
+      throw ArgumentError(fmt::format(
+          "--truth {} is one file for {} inputs; give a folder of files named like them",
+          truth.string(), files.size()));
+    return {truth};
+  }
+  std::vector<fs::path> truths;
+  for (const fs::path& file : files) truths.push_back(truth_in(truth, file));
+  return truths;
+}
+
+Clip read_truth(const fs::path& file, const InputOptions& options, const Clip& noisy) {
+  Clip truth = read_input(file, options);
+  if (truth.samples.rows() == noisy.samples.rows() && truth.samples.cols() == noisy.samples.cols())
+    return truth;
+  throw FileError(file, fmt::format("the truth has {} frames x {} columns, its input {} x {}; see "
+                                    "--truth-frames",
+                                    truth.samples.rows(), truth.samples.cols(),
+                                    noisy.samples.rows(), noisy.samples.cols()));
+}
+
+}  // namespace moclean
