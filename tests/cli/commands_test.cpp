@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include "moclean/formats/formats.hpp"
 #include "moclean/formats/read_write.hpp"
 #include "moclean/metric/metric.hpp"
 
@@ -28,6 +29,21 @@ TEST(Commands, HelpOfEveryCommandEndsWithAnExample) {
     ASSERT_NE(example, std::string::npos) << command;
     EXPECT_THAT(help.out.substr(example), HasSubstr("moclean " + command));
   }
+}
+
+TEST(Commands, HelpNamesEveryFormat) {
+  const std::string read = "(" + listed_extensions(can_read) + ")";
+  const std::string written = "(" + listed_extensions(can_write) + ")";
+  for (const std::string command : {"denoise", "corrupt", "convert", "info"})
+    EXPECT_THAT(run({command, "--help"}).out, HasSubstr(read)) << command;
+  for (const std::string command : {"denoise", "corrupt", "convert"})
+    EXPECT_THAT(run({command, "--help"}).out, HasSubstr(written)) << command;
+  EXPECT_THAT(run({"experiment", "table1", "--help"}).out, HasSubstr(read));
+  EXPECT_THAT(run({"evaluate", "--help"}).out, HasSubstr(any_extension(has_skeleton)));
+
+  const std::string formats_help = run({"convert", "--help"}).out;
+  for (const Format* format : formats())
+    EXPECT_THAT(formats_help, HasSubstr("\n  " + std::string(format->extension) + " "));
 }
 
 TEST(Commands, PrintsItsVersion) {

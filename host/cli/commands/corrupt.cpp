@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/formats/formats.hpp"
 #include "moclean/formats/read_write.hpp"
 #include "moclean/metric/metric.hpp"
 #include "moclean/noise/noise.hpp"
@@ -78,15 +79,15 @@ void add_corrupt(CLI::App& program, Action& action) {
       "  moclean corrupt walk.bvh -o noisy.csv --noise gaussian-frames:frames=400,mean=1,sd=1.2 "
       "--seed 1");
   const auto options = std::make_shared<CorruptOptions>();
-  command.add_option("INPUT", options->input, "Recording (.bvh .amc .csv .npy)")
+  command.add_option("INPUT", options->input, with_extensions("Recording", can_read))
       ->required()
       ->type_name("");
-  command.add_option("-o,--output", options->output, "File (.csv .npy)")
+  command.add_option("-o,--output", options->output, with_extensions("File", can_write))
       ->required()
       ->type_name("OUTPUT");
   command
       .add_option("--mask", options->mask,
-                  "Also write what the noise touched: 1 there, else 0 (.csv .npy)")
+                  with_extensions("Also write what the noise touched: 1 there, else 0", can_write))
       ->type_name("FILE");
   command.add_option("--noise", options->noise, "Noise model and its settings")
       ->required()

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/formats/formats.hpp"
 #include "moclean/formats/read_skeleton.hpp"
 #include "moclean/formats/read_write.hpp"
 #include "moclean/metric/figures.hpp"
@@ -154,7 +155,9 @@ void add_evaluate(CLI::App& program, Action& action) {
       "FD is |TRUTH - ESTIMATE|_F / sqrt(frames x columns) (Peng et al., equation 8); "
       "docs/metrics.md\n"
       "has every figure. --frames counts in TRUTH; other files are cut alike if they are as long.\n"
-      "Bone lengths need a skeleton: a TRUTH in .bvh or .amc, or --skeleton.\n\n"
+      "Bone lengths need a skeleton: a TRUTH in " +
+      any_extension(has_skeleton) +
+      ", or --skeleton.\n\n"
       "Example:\n"
       "  moclean evaluate walk.bvh clean.csv\n"
       "  moclean evaluate walk.bvh clean.csv --mask touched.csv --outliers outliers.csv\n"

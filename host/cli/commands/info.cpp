@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "moclean/formats/extension.hpp"
+#include "moclean/formats/formats.hpp"
 #include "moclean/run/inputs.hpp"
 
 #include "cli/commands/commands.hpp"
@@ -20,15 +20,17 @@ struct InfoOptions {
   bool json = false;
 };
 
-// The name of the format: the extension without its dot.
-std::string format_of(const std::filesystem::path& file) { return extension(file).substr(1); }
+// The extension without its dot, of a file that could be read.
+std::string format_name(const std::filesystem::path& file) {
+  return std::string(format_of(file)->extension.substr(1));
+}
 
 // What the file does not state is null.
 Json info_record(const std::filesystem::path& file, const Clip& clip) {
   const bool has_rate = clip.frame_rate > 0;
   Json record;
   record["file"] = file.string();
-  record["format"] = format_of(file);
+  record["format"] = format_name(file);
   record["frames"] = clip.frames();
   record["columns"] = clip.samples.cols();
   record["joints"] = Json::array();
@@ -42,7 +44,7 @@ Json info_record(const std::filesystem::path& file, const Clip& clip) {
 }
 
 void print_info(const std::filesystem::path& file, const Clip& clip) {
-  fmt::print("format    {}\n", format_of(file));
+  fmt::print("format    {}\n", format_name(file));
   fmt::print("frames    {}\n", clip.frames());
   fmt::print("columns   {}\n", clip.samples.cols());
   std::string names;
@@ -74,7 +76,7 @@ void add_info(CLI::App& program, Action& action) {
   CLI::App& command = *program.add_subcommand("info", "Say what a recording holds");
   command.footer("Example:\n  moclean info walk.bvh");
   const auto options = std::make_shared<InfoOptions>();
-  command.add_option("FILE", options->file, "Recording (.bvh .amc .csv .npy)")
+  command.add_option("FILE", options->file, with_extensions("Recording", can_read))
       ->required()
       ->type_name("");
   add_input_options(command, options->reading);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/formats/formats.hpp"
 #include "moclean/solve/opencl/opencl_backend.hpp"
 
 #include "cli/options/input_options.hpp"
@@ -17,14 +18,23 @@ constexpr const char* files_group = "Files";
 constexpr const char* method_group = "Method";
 constexpr const char* report_group = "Report";
 
+// The formats of results, as --format names them.
+std::vector<std::string> format_names() {
+  std::vector<std::string> names = extensions(can_write);
+  for (std::string& name : names) name.erase(0, 1);  // the dot
+  return names;
+}
+
 void add_files(CLI::App& command, DenoiseOptions& options) {
   command
-      .add_option("INPUT", options.inputs, "Recordings (.bvh .amc .csv .npy), or folders of them")
+      .add_option("INPUT", options.inputs,
+                  with_extensions("Recordings", can_read) + ", or folders of them")
       ->required()
       ->type_name("");
   command
       .add_option("-o,--output", options.output,
-                  "File (.csv .npy) for one input; folder, created if missing, for several")
+                  with_extensions("File", can_write) +
+                      " for one input; folder, created if missing, for several")
       ->required()
       ->type_name("OUTPUT")
       ->group(files_group);
@@ -50,7 +60,7 @@ void add_files(CLI::App& command, DenoiseOptions& options) {
       .add_option(
           "--format", options.format,
           "Format of results in a folder; otherwise that of the input if possible, else npy")
-      ->check(CLI::IsMember({"csv", "npy"}))
+      ->check(CLI::IsMember(format_names()))
       ->type_name("FORMAT")
       ->group(files_group);
   add_input_options(command, options.reading);

@@ -24,7 +24,7 @@ struct DenoiseOptions : BackendOptions {
   std::filesystem::path outliers;  ///< empty: not asked for
   std::filesystem::path mask;      ///< status of every sample; empty: not asked for
   std::filesystem::path sigma;     ///< standard deviations; empty: not asked for
-  std::string format;              ///< "csv", "npy" or empty
+  std::string format;              ///< extension without its dot, or empty
 
   std::string method_name;  ///< --method, as it was given; empty: see complete()
   std::optional<Index> segment_length;

@@ -23,7 +23,7 @@ void add_common(CLI::App& command, ExperimentOptions& options) {
 void add_table_options(CLI::App& command, TableOptions& options) {
   command
       .add_option("TAKE", options.inputs,
-                  "Recordings without noise (.bvh .amc .csv .npy), or folders of them")
+                  with_extensions("Recordings without noise", can_read) + ", or folders of them")
       ->required()
       ->type_name("");
   command.add_option("--seeds", options.seeds, "So many noises per take, of seeds 1 to N")

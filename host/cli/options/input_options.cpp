@@ -24,6 +24,10 @@ std::optional<Index> parse_frame(std::string_view text, const std::string& whole
 
 }  // namespace
 
+std::string with_extensions(const std::string& text, FormatTrait trait) {
+  return fmt::format("{} ({})", text, listed_extensions(trait));
+}
+
 FrameRange parse_frame_range(const std::string& text) {
   const std::string_view view = text;
   const std::size_t colon = view.find(':');

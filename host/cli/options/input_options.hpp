@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 
+#include "moclean/formats/formats.hpp"
 #include "moclean/run/inputs.hpp"
 
 namespace CLI {
@@ -10,6 +11,9 @@ class App;
 }
 
 namespace moclean::cli {
+
+/// A help text and the extensions of the formats of which `trait` is true: `Recording (.bvh .csv)`.
+std::string with_extensions(const std::string& text, FormatTrait trait);
 
 /// Reads `A:B`, `A:`, `:B` or `:`. Throws ArgumentError for anything else, and if A >= B.
 FrameRange parse_frame_range(const std::string& text);

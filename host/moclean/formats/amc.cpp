@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "moclean/formats/find_skeleton.hpp"
 #include "moclean/formats/row_collector.hpp"
 #include "moclean/formats/text_scanner.hpp"
 
@@ -121,6 +122,13 @@ class AmcParser {
   Index number_ = 0;         // of the frame being read, as the file counts
 };
 
+Clip read_amc(std::string_view content, const std::filesystem::path& file,
+              const ReadOptions& options) {
+  const std::filesystem::path asf =
+      options.skeleton.empty() ? find_skeleton(file) : options.skeleton;
+  return joint_positions(parse_amc(content, file, parse_asf(read_file(asf), asf)));
+}
+
 }  // namespace
 
 SkeletonMotion parse_amc(std::string_view text, const std::filesystem::path& file,
@@ -128,5 +136,15 @@ SkeletonMotion parse_amc(std::string_view text, const std::filesystem::path& fil
   Matrix channels = AmcParser(text, file, skeleton).parse();
   return {skeleton.skeleton, std::move(channels), 0, "ASF units"};
 }
+
+constinit const Format amc_format = {
+    .name = "ASF/AMC",
+    .extension = ".amc",
+    .notes =
+        "the .asf is found beside the .amc (`14_06.amc`: `14.asf`) or given; positions in ASF "
+        "units",
+    .content = {.names = true, .unit = true, .skeleton = true},
+    .read = read_amc,
+};
 
 }  // namespace moclean

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "moclean/formats/asf.hpp"
+#include "moclean/formats/format.hpp"
 
 namespace moclean {
 
@@ -16,5 +17,8 @@ namespace moclean {
 /// "ASF units"; the format states no frame rate.
 SkeletonMotion parse_amc(std::string_view text, const std::filesystem::path& file,
                          const AcclaimSkeleton& skeleton);
+
+/// Acclaim motion (.amc) with its skeleton (.asf): that of the options, else find_skeleton().
+extern const Format amc_format;
 
 }  // namespace moclean

@@ -154,10 +154,22 @@ class BvhParser {
   int open_ = -1;                 // the joint whose braces are open
 };
 
+Clip read_bvh(std::string_view content, const std::filesystem::path& file, const ReadOptions&) {
+  return joint_positions(parse_bvh(content, file));
+}
+
 }  // namespace
 
 SkeletonMotion parse_bvh(std::string_view text, const std::filesystem::path& file) {
   return BvhParser(text, file).parse();
 }
+
+constinit const Format bvh_format = {
+    .name = "BVH",
+    .extension = ".bvh",
+    .notes = "any hierarchy, channels and rotation order; becomes joint positions",
+    .content = {.names = true, .frame_rate = true, .skeleton = true},
+    .read = read_bvh,
+};
 
 }  // namespace moclean

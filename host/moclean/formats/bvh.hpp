@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "moclean/formats/format.hpp"
 #include "moclean/motion/skeleton.hpp"
 
 namespace moclean {
@@ -17,5 +18,8 @@ namespace moclean {
 /// of frames are left out, as assimp does (a real take, Boxing_Toes.bvh, states one too few). The
 /// frame rate is that of rate_from_period(); the format states no unit.
 SkeletonMotion parse_bvh(std::string_view text, const std::filesystem::path& file);
+
+/// Biovision Hierarchy (.bvh).
+extern const Format bvh_format;
 
 }  // namespace moclean

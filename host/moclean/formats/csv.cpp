@@ -223,6 +223,10 @@ char* put_number(char* position, double value) {
   return std::to_chars(position, position + longest_number, value).ptr;
 }
 
+Clip read_csv(std::string_view content, const std::filesystem::path& file, const ReadOptions&) {
+  return parse_csv(content, file);
+}
+
 }  // namespace
 
 Clip parse_csv(std::string_view text, const std::filesystem::path& file) {
@@ -253,5 +257,16 @@ void write_csv(AtomicFile& file, const Clip& clip) {
   }
   flush();
 }
+
+constinit const Format csv_format = {
+    .name = "CSV",
+    .extension = ".csv",
+    .notes =
+        "a header of column names, `# frame_rate: HZ` or a time column; empty or `nan` is a "
+        "missing sample",
+    .content = {.names = true, .frame_rate = true, .unit = true, .gaps = true},
+    .read = read_csv,
+    .write = write_csv,
+};
 
 }  // namespace moclean

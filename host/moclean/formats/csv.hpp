@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "moclean/formats/file.hpp"
+#include "moclean/formats/format.hpp"
 #include "moclean/motion/clip.hpp"
 
 namespace moclean {
@@ -21,5 +21,8 @@ Clip parse_csv(std::string_view text, const std::filesystem::path& file);
 /// Writes what parse_csv() reads back to the same bits: the shortest text for every number, `nan`
 /// for any NaN. Throws FileError.
 void write_csv(AtomicFile& file, const Clip& clip);
+
+/// Comma-separated values (.csv).
+extern const Format csv_format;
 
 }  // namespace moclean

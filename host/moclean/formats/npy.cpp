@@ -218,6 +218,10 @@ Matrix samples(std::string_view bytes, const Layout& layout) {
   return result;
 }
 
+Clip read_npy(std::string_view content, const std::filesystem::path& file, const ReadOptions&) {
+  return parse_npy(content, file);
+}
+
 }  // namespace
 
 Clip parse_npy(std::string_view bytes, const std::filesystem::path& file) {
@@ -247,5 +251,14 @@ void write_npy(AtomicFile& file, const Clip& clip) {
   file.write({reinterpret_cast<const char*>(clip.samples.data()),
               static_cast<std::size_t>(clip.samples.size()) * sizeof(double)});
 }
+
+constinit const Format npy_format = {
+    .name = "NPY",
+    .extension = ".npy",
+    .notes = "float32 or float64 in, float64 out, frames x columns",
+    .content = {.gaps = true},
+    .read = read_npy,
+    .write = write_npy,
+};
 
 }  // namespace moclean

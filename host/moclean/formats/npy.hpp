@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string_view>
 
-#include "moclean/formats/file.hpp"
+#include "moclean/formats/format.hpp"
 #include "moclean/motion/clip.hpp"
 
 namespace moclean {
@@ -19,5 +19,8 @@ Clip parse_npy(std::string_view bytes, const std::filesystem::path& file);
 /// Writes the samples as float64 [frames x columns] in C order, format 1.0; names, frame rate and
 /// unit have no place in it. Throws FileError.
 void write_npy(AtomicFile& file, const Clip& clip);
+
+/// NumPy arrays (.npy).
+extern const Format npy_format;
 
 }  // namespace moclean

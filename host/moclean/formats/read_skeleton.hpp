@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "moclean/formats/read_write.hpp"
+#include "moclean/formats/format.hpp"
 #include "moclean/motion/skeleton.hpp"
 
 namespace moclean {

@@ -1,38 +1,15 @@
 #include "moclean/formats/read_write.hpp"
 
-#include <string>
-
 #include "moclean/core/error.hpp"
-#include "moclean/formats/amc.hpp"
-#include "moclean/formats/asf.hpp"
-#include "moclean/formats/bvh.hpp"
-#include "moclean/formats/csv.hpp"
-#include "moclean/formats/extension.hpp"
-#include "moclean/formats/find_skeleton.hpp"
-#include "moclean/formats/npy.hpp"
+#include "moclean/formats/formats.hpp"
 
 namespace moclean {
-namespace {
-
-Clip read_amc(const std::filesystem::path& file, const std::filesystem::path& skeleton) {
-  const std::string motion = read_file(file);
-  const std::filesystem::path asf = skeleton.empty() ? find_skeleton(file) : skeleton;
-  return joint_positions(parse_amc(motion, file, parse_asf(read_file(asf), asf)));
-}
-
-Clip read_by_extension(const std::filesystem::path& file, const ReadOptions& options) {
-  const std::string kind = extension(file);
-  if (kind == ".bvh") return joint_positions(parse_bvh(read_file(file), file));
-  if (kind == ".amc") return read_amc(file, options.skeleton);
-  if (kind == ".csv") return parse_csv(read_file(file), file);
-  if (kind == ".npy") return parse_npy(read_file(file), file);
-  throw FileError(file, "expected a file ending in .bvh, .amc, .csv or .npy");
-}
-
-}  // namespace
 
 Clip read_clip(const std::filesystem::path& file, const ReadOptions& options) {
-  Clip clip = read_by_extension(file, options);
+  const Format* format = format_of(file);
+  if (!format || !can_read(*format))
+    throw FileError(file, "expected a file ending in " + any_extension(can_read));
+  Clip clip = format->read(read_file(file), file, options);
   if (clip.frame_rate == 0) clip.frame_rate = options.rate;
   return clip;
 }
@@ -42,11 +19,12 @@ void write_clip(const std::filesystem::path& file, const Clip& clip) {
 }
 
 AtomicFile write_temporary(const std::filesystem::path& file, const Clip& clip) {
-  const std::string kind = extension(file);
-  if (kind != ".csv" && kind != ".npy")
-    throw FileError(file, "cannot be written: expected a name ending in .csv or .npy");
+  const Format* format = format_of(file);
+  if (!format || !can_write(*format))
+    throw FileError(file,
+                    "cannot be written: expected a name ending in " + any_extension(can_write));
   AtomicFile target(file);
-  kind == ".csv" ? write_csv(target, clip) : write_npy(target, clip);
+  format->write(target, clip);
   target.close();
   return target;
 }

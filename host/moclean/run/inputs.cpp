@@ -1,13 +1,12 @@
 #include "moclean/run/inputs.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
-#include "moclean/formats/extension.hpp"
+#include "moclean/formats/formats.hpp"
 #include "moclean/formats/read_write.hpp"
 #include "moclean/solve/backend.hpp"
 
@@ -16,16 +15,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_recording(const fs::path& file) {
-  constexpr std::array known = {".bvh", ".amc", ".csv", ".npy"};
-  return std::ranges::find(known, extension(file)) != known.end();
-}
-
 std::vector<fs::path> recordings_in(const fs::path& folder) {
   std::vector<fs::path> found;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-    if (entry.is_regular_file() && is_recording(entry.path())) found.push_back(entry.path());
-  if (found.empty()) throw FileError(folder, "holds no recording (.bvh, .amc, .csv or .npy)");
+    if (entry.is_regular_file() && is_of_format(entry.path(), can_read))
+      found.push_back(entry.path());
+  if (found.empty())
+    throw FileError(folder, fmt::format("holds no recording ({})", any_extension(can_read)));
   std::ranges::sort(found);
   return found;
 }

@@ -29,9 +29,9 @@ Clip select_frames(const Clip& clip, const FrameRange& frames, const std::filesy
 /// Reads one recording and selects its frames.
 Clip read_input(const std::filesystem::path& file, const InputOptions& options);
 
-/// Replaces every folder among `inputs` by the recordings in it (.bvh .amc .csv .npy, not those of
-/// sub-folders), sorted by name. Throws FileError for a file that does not exist or a folder that
-/// holds no recording.
+/// Replaces every folder among `inputs` by the recordings in it (of formats that can be read, not
+/// those of sub-folders), sorted by name. Throws FileError for a file that does not exist or a
+/// folder that holds no recording.
 std::vector<std::filesystem::path> expand_folders(const std::vector<std::filesystem::path>& inputs);
 
 /// What a method needs of a recording.

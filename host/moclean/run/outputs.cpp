@@ -8,15 +8,13 @@
 
 #include "moclean/core/error.hpp"
 #include "moclean/formats/extension.hpp"
+#include "moclean/formats/formats.hpp"
+#include "moclean/formats/npy.hpp"
 
 namespace moclean {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool can_be_written(const fs::path& file) {
-  return extension(file) == ".csv" || extension(file) == ".npy";
-}
 
 fs::path folder_of(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
@@ -53,7 +51,7 @@ bool wants_folder(const OutputRequest& request) {
 
 std::string extension_of_result(const fs::path& input, const std::string& format) {
   if (!format.empty()) return "." + format;
-  return can_be_written(input) ? extension(input) : ".npy";
+  return is_of_format(input, can_write) ? extension(input) : std::string(npy_format.extension);
 }
 
 std::vector<fs::path> reports_in(const fs::path& folder, const std::vector<fs::path>& results) {
@@ -122,9 +120,9 @@ void require_writable(const fs::path& file) {
 }
 
 void require_writable_clip(const fs::path& file) {
-  if (!can_be_written(file))
-    throw ArgumentError(
-        fmt::format("{}: cannot write this format, expected .csv or .npy", file.string()));
+  if (!is_of_format(file, can_write))
+    throw ArgumentError(fmt::format("{}: cannot write this format, expected {}", file.string(),
+                                    any_extension(can_write)));
   require_writable(file);
 }
 

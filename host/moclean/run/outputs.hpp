@@ -25,21 +25,20 @@ struct OutputRequest {
   std::filesystem::path mask = {};            ///< as `outliers`
   std::filesystem::path sigma = {};           ///< as `outliers`
   std::filesystem::path report;               ///< as `outliers`
-  std::string format;                         ///< "csv", "npy", or empty: as the extension says
+  std::string format;                         ///< extension without dot; empty: by the name
 };
 
 /// Decides on every output before anything is computed and checks that it can be written.
 ///
 /// `output` is a folder if there are several inputs or one that is a folder, if it ends with a
 /// slash, or if it is a folder already. A file in it is named after its input; its format is
-/// `format`, else the input's if that is .csv or .npy, else .npy; a report in its folder is .html.
-/// Throws ArgumentError for an
-/// extension that cannot be written and for two results of the same name, FileError for a place
-/// that cannot be written.
+/// `format`, else the input's if that can be written, else .npy; a report in its folder is .html.
+/// Throws ArgumentError for an extension that cannot be written and for two results of the same
+/// name, FileError for a place that cannot be written.
 OutputPlan plan_outputs(const OutputRequest& request);
 
-/// Throws ArgumentError unless the file's extension is .csv or .npy, and FileError unless its
-/// folder exists and can be written.
+/// Throws ArgumentError unless the file's extension is of a format that can be written, and
+/// FileError unless its folder exists and can be written.
 void require_writable_clip(const std::filesystem::path& file);
 
 /// Throws FileError unless the file's folder exists and can be written.

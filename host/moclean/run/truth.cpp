@@ -1,10 +1,9 @@
 #include "moclean/run/truth.hpp"
 
-#include <array>
-
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/formats/formats.hpp"
 
 namespace moclean {
 namespace {
@@ -12,13 +11,12 @@ namespace {
 namespace fs = std::filesystem;
 
 fs::path truth_in(const fs::path& folder, const fs::path& file) {
-  for (const char* kind : {".bvh", ".amc", ".csv", ".npy"}) {
+  for (const std::string& kind : extensions(can_read)) {
     const fs::path candidate = folder / (file.stem() += kind);
     if (fs::exists(candidate)) return candidate;
   }
-  throw FileError(folder, fmt::format("holds no truth of {}: expected {} with .bvh, .amc, .csv or "
-                                      ".npy",
-                                      file.string(), file.stem().string()));
+  throw FileError(folder, fmt::format("holds no truth of {}: expected {} with {}", file.string(),
+                                      file.stem().string(), any_extension(can_read)));
 }
 
 }  // namespace

@@ -8,8 +8,8 @@
 namespace moclean {
 
 /// The truth of every file. `truth` is a file for a single one, else a folder that holds for each a
-/// recording of the same name, in any format that can be read; if it holds several, the first of
-/// .bvh, .amc, .csv, .npy. Throws FileError for one that does not exist, ArgumentError for one file
+/// recording of the same name, in any format that can be read; if it holds several, the first in
+/// the order of formats(). Throws FileError for one that does not exist, ArgumentError for one file
 /// and several inputs.
 std::vector<std::filesystem::path> truths_of(const std::filesystem::path& truth,
                                              const std::vector<std::filesystem::path>& files);

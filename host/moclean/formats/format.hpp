@@ -1,0 +1,43 @@
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "moclean/formats/file.hpp"
+#include "moclean/motion/clip.hpp"
+
+namespace moclean {
+
+/// What a reader cannot find in the file itself.
+struct ReadOptions {
+  std::filesystem::path skeleton;  ///< .asf for an .amc; empty: look in the .amc's folder
+  double rate = 0;                 ///< Hz for files that state none; 0: leave unknown
+};
+
+/// What files of a format say beside the positions.
+struct FormatContent {
+  bool names = false;       ///< of columns or joints
+  bool frame_rate = false;  ///< a file may still leave it out
+  bool unit = false;        ///< likewise
+  bool skeleton = false;
+  bool gaps = false;  ///< a sample that was not observed can be told from any number
+};
+
+/// A file format: all that the program knows of it. Each has a pair of files, NAME.hpp and
+/// NAME.cpp, with the only object of this type that describes it, and a line in formats.cpp. Error
+/// and help texts and the table in README.md follow from these objects.
+struct Format {
+  std::string_view name;       ///< as people call it
+  std::string_view extension;  ///< with its dot, in lower case; that of no other format
+  std::string_view notes;      ///< one line of what its users should know; names between backticks
+  FormatContent content = {};
+
+  /// Makes a recording of the whole content of `file`. Throws FileError. Null: cannot be read.
+  Clip (*read)(std::string_view content, const std::filesystem::path& file,
+               const ReadOptions& options) = nullptr;
+
+  /// Throws FileError for a clip that the format has no way to say. Null: cannot be written.
+  void (*write)(AtomicFile& file, const Clip& clip) = nullptr;
+};
+
+}  // namespace moclean
