@@ -9,8 +9,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "moclean/run/memory_budget.hpp"
-
 #include "run/small_run.hpp"
 #include "support/matrix.hpp"
 

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "moclean/run/memory_budget.hpp"
+#include "moclean/run/job.hpp"
 #include "moclean/solve/opencl/opencl_backend.hpp"
 #include "moclean/solve/reference/reference_backend.hpp"
 

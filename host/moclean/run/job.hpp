@@ -12,6 +12,9 @@
 
 namespace moclean {
 
+/// The share of a memory limit that batches of a device may take; the rest is for the host.
+constexpr std::uint64_t device_share(std::uint64_t memory_limit) { return memory_limit / 4; }
+
 /// What a take that fails means for the others.
 enum class FailurePolicy {
   all_or_nothing,  ///< the run ends and nothing is written for any

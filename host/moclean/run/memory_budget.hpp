@@ -7,9 +7,6 @@
 
 namespace moclean {
 
-/// The share of a memory limit that a device batch may take; the rest is for the host.
-constexpr std::uint64_t device_share(std::uint64_t memory_limit) { return memory_limit / 4; }
-
 class MemoryBudget;
 
 /// Bytes taken out of a MemoryBudget, given back when it is destroyed. The budget outlives it.
