@@ -331,6 +331,8 @@ SegmentPlan plan(const Automatic& method, Index frames) {
   return segments_of_length(frames, method.window);
 }
 
+std::uint64_t copies_held(const Automatic&) { return copies_held(Segmentation{.overlap = 1}); }
+
 void check(const Automatic& method) {
   if (method.window < shortest_window)
     throw ArgumentError(fmt::format("auto: window is {}, expected at least {} frames",

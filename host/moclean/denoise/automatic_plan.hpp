@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <stop_token>
 #include <vector>
@@ -13,6 +14,10 @@ namespace moclean {
 /// Tolerance of robust PCA that is enough to compare segments: 17 iterations instead of 39
 /// (docs/decisions/automatic-segments.md).
 inline constexpr double coarse_tolerance = 1e-3;
+
+/// Copies of the samples of its takes that automatic_plans() has at a time: its batches are four
+/// times the takes, data and two results; there are medians, too.
+inline constexpr std::uint64_t copies_held_by_plans = 14;
 
 /// Cuts each take into segments[t] segments where robust PCA then errs least, as far as the noisy
 /// data tell: the cost of a candidate segment is |A - M|_F^2, A its motion by `method` at the

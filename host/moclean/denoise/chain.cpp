@@ -1,5 +1,6 @@
 #include "moclean/denoise/chain.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -31,6 +32,20 @@ Clip difference(const Clip& take, const Clip& clean) {
 }
 
 }  // namespace
+
+// Filters have fewer than any matrix method. Several steps keep what they began with and what the
+// last one made.
+std::uint64_t copies_held(const Chain& chain) {
+  constexpr std::uint64_t kept_by_steps = 2;
+  std::uint64_t most = copies_held(Segmentation{});
+  for (const Step& step : chain) {
+    if (const auto* low_rank = std::get_if<LowRank>(&step))
+      most = std::max(most, copies_held(low_rank->segmentation));
+    if (const auto* automatic = std::get_if<Automatic>(&step))
+      most = std::max(most, copies_held(*automatic));
+  }
+  return chain.size() > 1 ? most + kept_by_steps : most;
+}
 
 ChainDenoiser::ChainDenoiser(Chain chain, Backend* backend, int jobs)
     : chain_(std::move(chain)), backend_(backend), jobs_(jobs) {

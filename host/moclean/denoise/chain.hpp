@@ -69,6 +69,10 @@ bool accepts_missing(const Chain& chain);
 /// Whether the result has a standard deviation per sample (Denoised::sigma).
 bool has_sigma(const Chain& chain);
 
+/// Copies of the samples of its takes that ChainDenoiser has at a time beside the takes, the
+/// results but sigma among them.
+std::uint64_t copies_held(const Chain& chain);
+
 /// Runs a chain. The motion is what the last step made; the outliers are those of the method if it
 /// is the only step, otherwise take - motion, 0 where either is missing. Segments are those of the
 /// first matrix method; a chain of filters has none.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -28,6 +29,10 @@ struct Denoised {
   double solve_seconds =
       0;  ///< wall time; takes solved together share it by their number of frames
 };
+
+/// Of a take's samples in its result: motion and outliers. Memory is counted in such copies, at
+/// most; those of masks and sigma by who asks for them.
+inline constexpr std::uint64_t copies_in_result = 2;
 
 /// Turns clips into clips.
 class Denoiser {

@@ -113,6 +113,16 @@ SegmentPlan plan(const Segmentation& segmentation, Index frames) {
   return segments_of_length(frames, segmentation.length);
 }
 
+// The stacked data, A and E beside the results, and padding of the rows. Segments that overlap are
+// stacked and solved at twice their length at most.
+std::uint64_t copies_held(const Segmentation& segmentation) {
+  constexpr std::uint64_t stacked = 1, solved = 2, padding = 1, overlapping = 4;
+  std::uint64_t copies = stacked + solved + copies_in_result + padding;
+  if (segmentation.overlap > 0) copies += overlapping;
+  if (segmentation.automatic) copies += copies_held_by_plans;
+  return copies;
+}
+
 std::vector<Denoised> LowRankDenoiser::denoise(std::span<const Clip> takes,
                                                const Monitor& monitor) {
   for (std::size_t t = 0; t < takes.size(); ++t)

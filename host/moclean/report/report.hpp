@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -56,5 +57,8 @@ void require_report();
 /// the page. Throws as require_report(), and ShapeError if the parts of a take, or the rows of a
 /// table, do not fit together.
 std::string html(const Report& report);
+
+/// Copies of a take's samples that its text takes.
+inline constexpr std::uint64_t copies_in_text = 4;
 
 }  // namespace moclean
