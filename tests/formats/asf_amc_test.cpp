@@ -1,3 +1,4 @@
+#include <any>
 #include <numbers>
 #include <regex>
 #include <string>
@@ -23,7 +24,7 @@ std::string replaced(std::string_view text, const std::string& what, const std::
   return std::regex_replace(std::string(text), std::regex(what), with);
 }
 
-Clip read(std::string_view amc, std::string_view asf) {
+Recording read(std::string_view amc, std::string_view asf) {
   return joint_positions(parse_amc(amc, "tiny.amc", parse_asf(asf, "tiny.asf")));
 }
 
@@ -37,13 +38,25 @@ Matrix tiny_positions() {
 }
 
 TEST(AsfAmc, GiveThePositionsFoundOnPaper) {
-  const Clip clip = read(test::tiny_amc, test::tiny_asf);
+  const Recording clip = read(test::tiny_amc, test::tiny_asf);
 
   EXPECT_LE(largest_difference(clip.samples, tiny_positions()), test::tolerance::by_hand(6));
   EXPECT_THAT(clip.columns, ElementsAre("root.x", "root.y", "root.z", "thigh.x", "thigh.y",
                                         "thigh.z", "shin.x", "shin.y", "shin.z"));
   EXPECT_EQ(clip.unit, "ASF units");
   EXPECT_EQ(clip.frame_rate, 0);
+}
+
+TEST(AsfAmc, KeepWhatIsNeededToWriteTheFileAgain) {
+  const std::string header = "#!OML:ASF tiny.asf\n:FULLY-SPECIFIED\n:RADIANS\n";
+  const Recording recording = read(header + "7\nthigh 1 0\nroot 1 2 3 0 0 0\n", test::tiny_asf);
+
+  const auto& document = std::any_cast<const AmcDocument&>(recording.source);
+  EXPECT_EQ(document.header, header);
+  EXPECT_EQ(document.radians_per_angle, 1);
+  EXPECT_EQ(document.first_frame, 7);
+  EXPECT_THAT(document.order, ElementsAre(1, 0));
+  EXPECT_EQ(recording.channels.cols(), 8);
 }
 
 class AcclaimSpelling : public testing::TestWithParam<std::pair<std::string, std::string>> {};
@@ -53,7 +66,7 @@ TEST_P(AcclaimSpelling, DoesNotChangeThePositions) {
   const std::string asf = replaced(test::tiny_asf, what, with);
   const std::string amc = replaced(test::tiny_amc, what, with);
 
-  const Clip clip = read(amc, asf);
+  const Recording clip = read(amc, asf);
 
   EXPECT_TRUE(asf != test::tiny_asf || amc != test::tiny_amc);
   EXPECT_LE(largest_difference(clip.samples, tiny_positions()), test::tolerance::by_hand(6));
@@ -80,11 +93,11 @@ TEST(AsfAmc, TakeRadiansWhereTheFilesSaySo) {
       replaced(replaced(test::tiny_asf, "angle deg", "angle rad"), "0 0 90", "0 0 " + quarter);
   const std::string amc = replaced(test::tiny_amc, "90", quarter);
 
-  const Clip stated = read(replaced(amc, ":DEGREES", ":RADIANS"), asf);
-  const Clip inherited = read(replaced(amc, ":DEGREES\n", ""), asf);
-  const Clip mixed = read(test::tiny_amc, asf);
+  const Recording stated = read(replaced(amc, ":DEGREES", ":RADIANS"), asf);
+  const Recording inherited = read(replaced(amc, ":DEGREES\n", ""), asf);
+  const Recording mixed = read(test::tiny_amc, asf);
 
-  for (const Clip& clip : {stated, inherited, mixed})
+  for (const Recording& clip : {stated, inherited, mixed})
     EXPECT_LE(largest_difference(clip.samples, tiny_positions()), test::tolerance::by_hand(6));
 }
 
@@ -92,7 +105,7 @@ TEST(AsfAmc, AddPositionAndOrientationOfTheRoot) {
   const std::string asf = replaced(replaced(test::tiny_asf, "position 0 0 0", "position 10 20 30"),
                                    "orientation 0 0 0", "orientation 0 0 90");
 
-  const Clip clip = read("1\nroot 1 2 3 0 0 0\nthigh 0 0\n", asf);
+  const Recording clip = read("1\nroot 1 2 3 0 0 0\nthigh 0 0\n", asf);
 
   // The preset turns the whole recording: (1, 2, 3) becomes (-2, 1, 3), down becomes x.
   EXPECT_LE(largest_difference(clip.samples, Matrix{{8, 21, 33, 10, 21, 33, 13, 21, 33}}),
@@ -102,7 +115,7 @@ TEST(AsfAmc, AddPositionAndOrientationOfTheRoot) {
 TEST(AsfAmc, MoveABoneByItsTranslations) {
   const std::string asf = replaced(test::tiny_asf, "dof rx rz", "dof tx");
 
-  const Clip clip = read("1\nroot 0 0 0 0 0 0\nthigh 5\n", asf);
+  const Recording clip = read("1\nroot 0 0 0 0 0 0\nthigh 5\n", asf);
 
   // Along x of the bone's frame, which is the world's y.
   EXPECT_LE(largest_difference(clip.samples, Matrix{{0, 0, 0, 0, 3, 0, 0, 0, 0}}),
@@ -123,7 +136,7 @@ TEST_P(DofOrder, TurnsAboutTheFirstOneFirst) {
                         "direction 0 -1 0\n    length 2", "direction 1 2 3\n    length 1"),
                "axis 0 0 90", "axis 0 0 0");
 
-  const Clip clip = read("1\nroot 0 0 0 0 0 0\nthigh 90 90 90\n", asf);
+  const Recording clip = read("1\nroot 0 0 0 0 0 0\nthigh 90 90 90\n", asf);
 
   EXPECT_LE(largest_difference(clip.samples.middleCols(3, 3), GetParam().joint.transpose()),
             test::tolerance::by_hand(3));
@@ -145,7 +158,7 @@ TEST_P(AxisOrder, TurnsAboutTheFirstLetterFirst) {
                         "direction 0 -1 0\n    length 2", "direction 1 2 3\n    length 1"),
                "axis 0 0 90 XYZ", "axis 90 90 90 " + GetParam().order);
 
-  const Clip clip = read("1\nroot 0 0 0 0 0 0\nthigh 90\n", asf);
+  const Recording clip = read("1\nroot 0 0 0 0 0 0\nthigh 90\n", asf);
 
   EXPECT_LE(largest_difference(clip.samples.middleCols(3, 3), GetParam().joint.transpose()),
             test::tolerance::by_hand(3));
@@ -158,7 +171,7 @@ INSTANTIATE_TEST_SUITE_P(Three, AxisOrder,
 TEST(AsfAmc, ReadRootNumbersInTheOrderOfTheSkeleton) {
   const std::string asf = replaced(test::tiny_asf, "TX TY TZ RX RY RZ", "RZ TY TX TZ");
 
-  const Clip clip = read("1\nroot 90 2 1 3\nthigh 0 0\n", asf);
+  const Recording clip = read("1\nroot 90 2 1 3\nthigh 0 0\n", asf);
 
   EXPECT_LE(largest_difference(clip.samples, Matrix{{1, 2, 3, 3, 2, 3, 6, 2, 3}}),
             test::tolerance::by_hand(6));
@@ -171,7 +184,7 @@ TEST(AsfAmc, KeepBoneLengthsInEveryFrame) {
     amc += fmt::format("{}\nroot {} 2 3 {} {} {}\nthigh {} {}\n", f, f, 7 * f, 11 * f, 13 * f,
                        17 * f, 19 * f);
 
-  const Clip clip = joint_positions(parse_amc(amc, "tiny.amc", skeleton));
+  const Recording clip = joint_positions(parse_amc(amc, "tiny.amc", skeleton));
 
   for (Index f = 0; f < clip.frames(); ++f) {
     const auto joint = [&](Index j) { return clip.samples.row(f).segment<3>(3 * j); };

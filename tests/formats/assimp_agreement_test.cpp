@@ -50,7 +50,7 @@ TEST_P(AssimpAgreement, GivesTheSameJointPositions) {
     tracks[track->mNodeName.C_Str()] = track;
   }
 
-  const Clip clip = read_clip(file);
+  const Recording clip = read_recording(file);
 
   const std::vector<Joint> all = joints(clip);
   Matrix expected(clip.samples.rows(), clip.samples.cols());

@@ -1,5 +1,6 @@
 #include "moclean/formats/bvh.hpp"
 
+#include <any>
 #include <numbers>
 #include <regex>
 #include <string>
@@ -19,7 +20,7 @@ namespace {
 using test::largest_difference;
 using testing::ElementsAre;
 
-Clip read(std::string_view text) { return joint_positions(parse_bvh(text, "tiny.bvh")); }
+Recording read(std::string_view text) { return joint_positions(parse_bvh(text, "tiny.bvh")); }
 
 std::string replaced(std::string_view text, const std::string& what, const std::string& with) {
   return std::regex_replace(std::string(text), std::regex(what), with);
@@ -33,13 +34,25 @@ Matrix tiny_positions() {
 }
 
 TEST(Bvh, GivesThePositionsFoundOnPaper) {
-  const Clip clip = read(test::tiny_bvh);
+  const Recording clip = read(test::tiny_bvh);
 
   EXPECT_LE(largest_difference(clip.samples, tiny_positions()), test::tolerance::by_hand(6));
   EXPECT_THAT(clip.columns, ElementsAre("hip.x", "hip.y", "hip.z", "knee.x", "knee.y", "knee.z",
                                         "foot.x", "foot.y", "foot.z"));
   EXPECT_EQ(clip.frame_rate, 120);
   EXPECT_EQ(clip.unit, "");
+}
+
+TEST(Bvh, KeepsWhatIsNeededToWriteTheFileAgain) {
+  const Recording recording = read(test::tiny_bvh);
+
+  const auto& document = std::any_cast<const BvhDocument&>(recording.source);
+  EXPECT_EQ(document.hierarchy + "MOTION",
+            test::tiny_bvh.substr(0, test::tiny_bvh.find("MOTION") + 6));
+  EXPECT_EQ(document.frame_time, .0083333);
+  EXPECT_EQ(recording.skeleton->bones[2].name, "foot");
+  EXPECT_EQ(recording.channels.cols(), 10);
+  EXPECT_EQ(recording.channels(0, 6), std::numbers::pi / 2);
 }
 
 class BvhSpelling : public testing::TestWithParam<std::pair<std::string, std::string>> {};
@@ -49,7 +62,7 @@ TEST_P(BvhSpelling, DoesNotChangeThePositions) {
   const std::string text = replaced(test::tiny_bvh, what, with);
   ASSERT_NE(text, test::tiny_bvh);
 
-  const Clip clip = read(text);
+  const Recording clip = read(text);
 
   EXPECT_LE(largest_difference(clip.samples, tiny_positions()), test::tolerance::by_hand(6));
   EXPECT_EQ(clip.frame_rate, 120);
@@ -65,7 +78,7 @@ INSTANTIATE_TEST_SUITE_P(
                     std::pair{"End Site", "End site"}));
 
 TEST(Bvh, AcceptsNamesWithBlanks) {
-  const Clip clip = read(replaced(test::tiny_bvh, "JOINT knee", "JOINT left knee 2 "));
+  const Recording clip = read(replaced(test::tiny_bvh, "JOINT knee", "JOINT left knee 2 "));
 
   EXPECT_EQ(clip.columns[3], "left knee 2.x");
 }
@@ -80,7 +93,7 @@ Frame Time: 0.1
 90 10 20 0
 )";
 
-  const Clip clip = read(hierarchy);
+  const Recording clip = read(hierarchy);
 
   // a at (10, 6, 7); b at a + Rz(90) (1, 20, 3) = a + (-20, 1, 3).
   EXPECT_LE(largest_difference(clip.samples, Matrix{{10, 6, 7, -10, 7, 10}}),
@@ -101,7 +114,7 @@ Frame Time: 0.1
 }
 
 TEST(Bvh, LeavesOutLinesBeyondTheStatedFrames) {
-  const Clip clip = read(std::string(test::tiny_bvh) + "9 9 9 9 9 9 9 9 9 9\n");
+  const Recording clip = read(std::string(test::tiny_bvh) + "9 9 9 9 9 9 9 9 9 9\n");
 
   EXPECT_EQ(clip.frames(), 2);
 }
@@ -112,7 +125,7 @@ TEST(Bvh, ReadsHierarchiesOfAnyDepth) {
   for (int i = 0; i < depth; ++i) text += "JOINT j { OFFSET 0 1 0\n";
   text += std::string(depth + 1, '}') + "\nMOTION\nFrames: 1\nFrame Time: 1\n7\n";
 
-  const Clip clip = read(text);
+  const Recording clip = read(text);
 
   EXPECT_EQ(clip.samples(0, 3 * depth + 1), depth);
 }

@@ -18,7 +18,7 @@ namespace {
 struct Format {
   std::string name;
   std::string file;  // a valid one
-  std::function<Clip(std::string_view)> parse;
+  std::function<Recording(std::string_view)> parse;
 };
 
 std::string tiny_npy() {
@@ -51,7 +51,7 @@ bool parses(const Format& format, const std::string& text) {
   // An exact copy on the heap, so that a sanitizer sees a read one byte beyond it.
   const std::vector<char> exact(text.begin(), text.end());
   try {
-    const Clip clip = format.parse({exact.data(), exact.size()});
+    const Recording clip = format.parse({exact.data(), exact.size()});
     EXPECT_GT(clip.frames(), 0);
     EXPECT_EQ(clip.samples.cols(), static_cast<Index>(clip.columns.size()));
     return true;

@@ -22,10 +22,10 @@ namespace {
 using test::same_bits;
 using testing::ElementsAre;
 
-Clip read(std::string_view text) { return parse_csv(text, "tiny.csv"); }
+Recording read(std::string_view text) { return parse_csv(text, "tiny.csv"); }
 
 TEST(Csv, ReadsNamesCommentsAndNumbers) {
-  const Clip clip = read(test::tiny_csv);
+  const Recording clip = read(test::tiny_csv);
 
   EXPECT_THAT(clip.columns, ElementsAre("hip, left", "hip.y", "hip.z"));
   EXPECT_EQ(clip.frame_rate, 120);
@@ -41,7 +41,7 @@ TEST(Csv, AcceptsEveryLineEndAndBlank) {
                            "\xEF\xBB\xBF"
                            "a,b\n1,2\n3,4\n",
                            "a , b\n 1,\t2 \n\n +3 , 4e0\n\n", "\n# x\n\na,b\n1,2\n3,4\n"}) {
-    const Clip clip = read(text);
+    const Recording clip = read(text);
     EXPECT_EQ(clip.samples, expected) << text;
     EXPECT_THAT(clip.columns, ElementsAre("a", "b")) << text;
   }
@@ -49,7 +49,7 @@ TEST(Csv, AcceptsEveryLineEndAndBlank) {
 
 TEST(Csv, TakesTheSeparatorFromTheHeader) {
   for (const char* text : {"a;b;c\n1;;3\n", "a\tb\tc\n1\t\t3\n", "a,b,c\n1,,3\n"}) {
-    const Clip clip = read(text);
+    const Recording clip = read(text);
     EXPECT_THAT(clip.columns, ElementsAre("a", "b", "c")) << text;
     EXPECT_EQ(clip.samples(0, 0), 1) << text;
     EXPECT_TRUE(std::isnan(clip.samples(0, 1))) << text;
@@ -59,7 +59,7 @@ TEST(Csv, TakesTheSeparatorFromTheHeader) {
 
 TEST(Csv, ReadsALeadingAndATrailingEmptyCell) {
   for (const char* text : {"a\tb\n\t2\n1\t\n", "a,b\n,2\n1,\n"}) {
-    const Clip clip = read(text);
+    const Recording clip = read(text);
     ASSERT_EQ(clip.frames(), 2) << text;
     EXPECT_TRUE(std::isnan(clip.samples(0, 0)) && std::isnan(clip.samples(1, 1))) << text;
     EXPECT_EQ(clip.samples(0, 1), 2) << text;
@@ -68,7 +68,7 @@ TEST(Csv, ReadsALeadingAndATrailingEmptyCell) {
 
 TEST(Csv, TakesTheRateFromATimeColumn) {
   for (const char* name : {"time", "Time", "t(s)", "Time [s]", "T"}) {
-    const Clip clip = read(fmt::format("{},a\n0,1\n0.01,2\n0.02,3\n", name));
+    const Recording clip = read(fmt::format("{},a\n0,1\n0.01,2\n0.02,3\n", name));
     EXPECT_EQ(clip.frame_rate, 100) << name;
     EXPECT_THAT(clip.columns, ElementsAre("a")) << name;
     EXPECT_EQ(clip.samples, (Matrix{{1}, {2}, {3}})) << name;
@@ -95,7 +95,7 @@ TEST(Csv, LeavesTheRateUnknownWhereNothingStatesIt) {
 TEST(Csv, GivesBackTheSameBits) {
   const test::TemporaryFolder folder;
   Random random(5);
-  Clip clip;
+  Recording clip;
   clip.samples = Matrix(200, 7);
   for (double& x : clip.samples.reshaped<Eigen::RowMajor>())  // any bit pattern but NaN
     do x = std::bit_cast<double>(random.below(UINT64_MAX));
@@ -114,8 +114,8 @@ TEST(Csv, GivesBackTheSameBits) {
   clip.frame_rate = 119.88;
   clip.unit = "ASF units";
 
-  write_clip(folder.path() / "x.csv", clip);
-  const Clip back = parse_csv(read_file(folder.path() / "x.csv"), "x.csv");
+  write_recording(folder.path() / "x.csv", clip);
+  const Recording back = parse_csv(read_file(folder.path() / "x.csv"), "x.csv");
 
   EXPECT_TRUE(same_bits(back.samples, clip.samples));
   EXPECT_EQ(back.columns, clip.columns);
@@ -125,9 +125,9 @@ TEST(Csv, GivesBackTheSameBits) {
 
 TEST(Csv, RefusesToWriteANameWithALineBreak) {
   const test::TemporaryFolder folder;
-  const Clip clip{Matrix{{1}}, {"a\nb"}, 0, ""};
+  const Recording clip{Matrix{{1}}, {"a\nb"}, 0, ""};
 
-  EXPECT_THROW(write_clip(folder.path() / "x.csv", clip), FileError);
+  EXPECT_THROW(write_recording(folder.path() / "x.csv", clip), FileError);
   EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
 

@@ -66,11 +66,11 @@ TEST(Formats, AreAllNamedWhereAnExtensionIsUnknown) {
   const TemporaryFolder folder;
   const auto file = folder.file("take.xyz", "");
 
-  EXPECT_THAT([&] { read_clip(file); },
+  EXPECT_THAT([&] { read_recording(file); },
               ThrowsMessage<FileError>(HasSubstr("file ending in " + any_extension(can_read))));
   EXPECT_THAT(
       [&] {
-        write_clip(file, {Matrix{{1}}, {"a"}, 0, ""});
+        write_recording(file, {Matrix{{1}}, {"a"}, 0, ""});
       },
       ThrowsMessage<FileError>(HasSubstr("name ending in " + any_extension(can_write))));
 }
@@ -83,19 +83,21 @@ TEST(Formats, ReadBackWhatTheyWrite) {
     if (!can_read(*format) || !can_write(*format)) continue;
     SCOPED_TRACE(format->name);
     const FormatContent& content = format->content;
-    const Clip clip{Matrix{{0.1, -2e-300, 1. / 3}, {4, content.gaps ? gap : 5, 1e140}},
-                    {"hip.x", "hip.y", "hip.z"},
-                    59.94,
-                    "mm"};
+    const Recording recording{Matrix{{0.1, -2e-300, 1. / 3}, {4, content.gaps ? gap : 5, 1e140}},
+                              {"hip.x", "hip.y", "hip.z"},
+                              59.94,
+                              "mm",
+                              UpAxis::z};
     const auto file = folder.path() / ("take" + std::string(format->extension));
 
-    write_clip(file, clip);
-    const Clip back = read_clip(file);
+    write_recording(file, recording);
+    const Recording back = read_recording(file);
 
-    EXPECT_TRUE(same_bits(back.samples, clip.samples));
-    EXPECT_EQ(back.columns, content.names ? clip.columns : default_column_names(3));
-    EXPECT_EQ(back.frame_rate, content.frame_rate ? clip.frame_rate : 0);
-    EXPECT_EQ(back.unit, content.unit ? clip.unit : "");
+    EXPECT_TRUE(same_bits(back.samples, recording.samples));
+    EXPECT_EQ(back.columns, content.names ? recording.columns : default_column_names(3));
+    EXPECT_EQ(back.frame_rate, content.frame_rate ? recording.frame_rate : 0);
+    EXPECT_EQ(back.unit, content.unit ? recording.unit : "");
+    EXPECT_EQ(back.up, content.up ? recording.up : std::nullopt);
   }
 }
 
@@ -107,7 +109,7 @@ class EachReadable : public testing::Test {
     folder_.file("tiny.bvh", test::tiny_bvh);
     folder_.file("tiny.amc", test::tiny_amc);
     folder_.file("tiny.csv", test::tiny_csv);
-    write_clip(folder_.path() / "tiny.npy", {Matrix{{1, 2, 3}}, {"a", "b", "c"}, 120, "mm"});
+    write_recording(folder_.path() / "tiny.npy", {Matrix{{1, 2, 3}}, {"a", "b", "c"}, 120, "mm"});
   }
 
   std::filesystem::path file(const Format& format) const {
@@ -120,14 +122,20 @@ class EachReadable : public testing::Test {
 TEST_F(EachReadable, SaysWhatItsFormatClaims) {
   for (const Format* format : formats()) {
     if (!can_read(*format)) continue;
-    const Clip clip = read_clip(file(*format));
+    const Recording recording = read_recording(file(*format));
 
-    EXPECT_GT(clip.samples.size(), 0) << format->name;
-    EXPECT_EQ(clip.columns.size(), static_cast<std::size_t>(clip.samples.cols())) << format->name;
-    EXPECT_EQ(clip.columns != default_column_names(clip.samples.cols()), format->content.names)
+    EXPECT_GT(recording.samples.size(), 0) << format->name;
+    EXPECT_EQ(recording.columns.size(), static_cast<std::size_t>(recording.samples.cols()))
         << format->name;
-    EXPECT_EQ(clip.frame_rate > 0, format->content.frame_rate) << format->name;
-    EXPECT_EQ(!clip.unit.empty(), format->content.unit) << format->name;
+    EXPECT_EQ(recording.columns != default_column_names(recording.samples.cols()),
+              format->content.names)
+        << format->name;
+    EXPECT_EQ(recording.frame_rate > 0, format->content.frame_rate) << format->name;
+    EXPECT_EQ(!recording.unit.empty(), format->content.unit) << format->name;
+    EXPECT_EQ(recording.skeleton.has_value(), format->content.skeleton) << format->name;
+    EXPECT_EQ(recording.channels.rows(), format->content.skeleton ? recording.frames() : 0)
+        << format->name;
+    EXPECT_EQ(joint_parents(recording).empty(), !format->content.skeleton) << format->name;
   }
 }
 
@@ -136,7 +144,8 @@ TEST_F(EachReadable, RefusesAnEmptyFileByName) {
     if (!can_read(*format)) continue;
     const auto empty = folder_.file("tiny" + std::string(format->extension), "");
 
-    EXPECT_THAT([&] { read_clip(empty); }, ThrowsMessage<FileError>(HasSubstr(empty.string())));
+    EXPECT_THAT([&] { read_recording(empty); },
+                ThrowsMessage<FileError>(HasSubstr(empty.string())));
   }
 }
 

@@ -22,8 +22,8 @@ std::string message_of(const std::string& file) {
   const std::filesystem::path path = test::test_file("malformed") / file;
   const bool is_skeleton = path.extension() == ".asf";
   try {
-    read_clip(is_skeleton ? test::test_file("malformed") / "truncated.amc" : path,
-              {.skeleton = is_skeleton ? path : test::test_file("malformed") / "leg.asf"});
+    read_recording(is_skeleton ? test::test_file("malformed") / "truncated.amc" : path,
+                   {.skeleton = is_skeleton ? path : test::test_file("malformed") / "leg.asf"});
   } catch (const FileError& error) {
     return error.what();
   }

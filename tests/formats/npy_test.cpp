@@ -50,7 +50,7 @@ std::string bytes(std::initializer_list<double> values, bool big_endian = false)
   return all;
 }
 
-Clip read(const std::string& file) { return parse_npy(file, "x.npy"); }
+Recording read(const std::string& file) { return parse_npy(file, "x.npy"); }
 
 const Matrix two_by_three{{1, 2, 3}, {4, 5, 6.5}};
 
@@ -94,7 +94,7 @@ TEST(Npy, ReadsKeysInAnyOrderAndEitherQuotes) {
 }
 
 TEST(Npy, MakesOneColumnOfAVector) {
-  const Clip clip = read(npy(dictionary("<f8", false, "(3,)"), bytes<double>({7, 8, 9})));
+  const Recording clip = read(npy(dictionary("<f8", false, "(3,)"), bytes<double>({7, 8, 9})));
 
   EXPECT_EQ(clip.samples, (Matrix{{7}, {8}, {9}}));
   EXPECT_THAT(clip.columns, ElementsAre("column0"));
@@ -104,9 +104,9 @@ TEST(Npy, FlattensJointsInEitherOrder) {
   // Sample [frame, joint, axis] = 100 frame + 10 joint + axis, 2 x 2 x 3.
   const Matrix expected{{0, 1, 2, 10, 11, 12}, {100, 101, 102, 110, 111, 112}};
 
-  const Clip c = read(npy(dictionary("<f8", false, "(2, 2, 3)"),
-                          bytes<double>({0, 1, 2, 10, 11, 12, 100, 101, 102, 110, 111, 112})));
-  const Clip fortran =
+  const Recording c = read(npy(dictionary("<f8", false, "(2, 2, 3)"),
+                               bytes<double>({0, 1, 2, 10, 11, 12, 100, 101, 102, 110, 111, 112})));
+  const Recording fortran =
       read(npy(dictionary("<f8", true, "(2, 2, 3)"),
                bytes<double>({0, 100, 10, 110, 1, 101, 11, 111, 2, 102, 12, 112})));
 
@@ -117,14 +117,14 @@ TEST(Npy, FlattensJointsInEitherOrder) {
 
 TEST(Npy, GivesBackTheSameBits) {
   const test::TemporaryFolder folder;
-  Clip clip;
+  Recording clip;
   clip.samples = test::random_matrix(50, 7, 3);
   clip.samples(0, 0) = -0.0;
   clip.samples(4, 2) = std::numeric_limits<double>::quiet_NaN();
   clip.samples(5, 2) = std::numeric_limits<double>::infinity();
 
-  write_clip(folder.path() / "x.npy", clip);
-  const Clip back = read(read_file(folder.path() / "x.npy"));
+  write_recording(folder.path() / "x.npy", clip);
+  const Recording back = read(read_file(folder.path() / "x.npy"));
 
   EXPECT_TRUE(test::same_bits(back.samples, clip.samples));
 }
@@ -135,7 +135,7 @@ TEST(Npy, WritesWhatNumpyWrites) {
   std::string header = dictionary(std::string(1, order) + "f8", false, "(2, 3)");
   header.resize(128 - 10 - 1, ' ');  // numpy aligns the samples to 64 bytes
 
-  write_clip(folder.path() / "x.npy", {two_by_three, {}, 0, ""});
+  write_recording(folder.path() / "x.npy", {two_by_three, {}, 0, ""});
 
   EXPECT_THAT(read_file(folder.path() / "x.npy"), StartsWith(npy(header, "")));
   EXPECT_EQ(std::filesystem::file_size(folder.path() / "x.npy"), 128 + 48);

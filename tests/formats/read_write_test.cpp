@@ -5,7 +5,6 @@
 #include "moclean/core/error.hpp"
 #include "moclean/formats/file.hpp"
 #include "moclean/formats/find_skeleton.hpp"
-#include "moclean/formats/read_skeleton.hpp"
 
 #include "formats/temporary_folder.hpp"
 #include "formats/tiny_files.hpp"
@@ -20,72 +19,78 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-TEST(ReadClip, ChoosesTheFormatByExtensionInAnyCase) {
+TEST(ReadRecording, ChoosesTheFormatByExtensionInAnyCase) {
   const TemporaryFolder folder;
   folder.file("tiny.ASF", test::tiny_asf);
 
-  EXPECT_EQ(read_clip(folder.file("a.bvh", test::tiny_bvh)).columns[3], "knee.x");
-  EXPECT_EQ(read_clip(folder.file("b.BVH", test::tiny_bvh)).columns[3], "knee.x");
-  EXPECT_EQ(read_clip(folder.file("tiny.Amc", test::tiny_amc)).columns[3], "thigh.x");
-  EXPECT_EQ(read_clip(folder.file("d.Csv", test::tiny_csv)).columns[1], "hip.y");
+  EXPECT_EQ(read_recording(folder.file("a.bvh", test::tiny_bvh)).columns[3], "knee.x");
+  EXPECT_EQ(read_recording(folder.file("b.BVH", test::tiny_bvh)).columns[3], "knee.x");
+  EXPECT_EQ(read_recording(folder.file("tiny.Amc", test::tiny_amc)).columns[3], "thigh.x");
+  EXPECT_EQ(read_recording(folder.file("d.Csv", test::tiny_csv)).columns[1], "hip.y");
 }
 
-TEST(ReadClip, NamesTheExtensionsItReads) {
+TEST(ReadRecording, NamesTheExtensionsItReads) {
   const TemporaryFolder folder;
 
   for (const char* name : {"x.txt", "x", "x.asf", ".bvh"})
-    EXPECT_THAT([&] { read_clip(folder.file(name, "")); },
+    EXPECT_THAT([&] { read_recording(folder.file(name, "")); },
                 ThrowsMessage<FileError>(
                     AllOf(HasSubstr(name), HasSubstr("expected a file ending in .bvh, .amc"))));
 }
 
-TEST(ReadClip, UsesTheRateOptionOnlyWhereTheFileStatesNone) {
+TEST(ReadRecording, UsesTheRateOptionOnlyWhereTheFileStatesNone) {
   const TemporaryFolder folder;
   const ReadOptions options{.skeleton = folder.file("s.asf", test::tiny_asf), .rate = 60};
 
-  EXPECT_EQ(read_clip(folder.file("a.bvh", test::tiny_bvh), options).frame_rate, 120);
-  EXPECT_EQ(read_clip(folder.file("a.amc", test::tiny_amc), options).frame_rate, 60);
-  EXPECT_EQ(read_clip(folder.file("a.csv", "a,b\n1,2\n"), options).frame_rate, 60);
-  EXPECT_EQ(read_clip(folder.file("b.csv", test::tiny_csv), options).frame_rate, 120);
+  EXPECT_EQ(read_recording(folder.file("a.bvh", test::tiny_bvh), options).frame_rate, 120);
+  EXPECT_EQ(read_recording(folder.file("a.amc", test::tiny_amc), options).frame_rate, 60);
+  EXPECT_EQ(read_recording(folder.file("a.csv", "a,b\n1,2\n"), options).frame_rate, 60);
+  EXPECT_EQ(read_recording(folder.file("b.csv", test::tiny_csv), options).frame_rate, 120);
 }
 
-TEST(ReadClip, BlamesTheFileThatIsWrong) {
+TEST(ReadRecording, BlamesTheFileThatIsWrong) {
   const TemporaryFolder folder;
   folder.file("tiny.asf", ":root\n order TX\n:bonedata\n begin\n length x\n");
 
-  EXPECT_THAT([&] { read_clip(folder.file("tiny.amc", test::tiny_amc)); },
+  EXPECT_THAT([&] { read_recording(folder.file("tiny.amc", test::tiny_amc)); },
               ThrowsMessage<FileError>(HasSubstr("tiny.asf:5: expected a number, found 'x'")));
 }
 
-TEST(ReadSkeleton, IsOfTheFileOrOfTheOption) {
+TEST(ReadRecording, HasTheSkeletonOfTheFileOrOfTheOptionIfThatFits) {
   const TemporaryFolder folder;
-  const fs::path csv = folder.file("a.csv", test::tiny_csv);
   const fs::path asf = folder.file("tiny.asf", test::tiny_asf);
+  const fs::path amc = folder.file("tiny.amc", test::tiny_amc);
+  const fs::path bvh = folder.file("a.bvh", test::tiny_bvh);
+  const fs::path fits = folder.path() / "fits.csv", other = folder.file("a.csv", test::tiny_csv);
+  write_recording(fits, read_recording(amc));
 
-  EXPECT_EQ(read_skeleton(folder.file("a.bvh", test::tiny_bvh))->bones[2].name, "foot");
-  EXPECT_EQ(read_skeleton(folder.file("tiny.amc", test::tiny_amc))->bones[1].name, "thigh");
-  EXPECT_EQ(read_skeleton(csv, {.skeleton = asf})->bones[1].name, "thigh");
-  EXPECT_FALSE(read_skeleton(csv));
+  EXPECT_EQ(read_recording(bvh).skeleton->bones[2].name, "foot");
+  EXPECT_EQ(read_recording(bvh, {.skeleton = asf}).skeleton->bones[2].name, "foot");
+  EXPECT_EQ(read_recording(amc).skeleton->bones[1].name, "thigh");
+  EXPECT_EQ(read_recording(fits, {.skeleton = asf}).skeleton->bones[1].name, "thigh");
+  EXPECT_EQ(read_recording(fits, {.skeleton = asf}).channels.size(), 0);
+  EXPECT_FALSE(read_recording(other, {.skeleton = asf}).skeleton);
+  EXPECT_FALSE(read_recording(fits).skeleton);
 }
 
-TEST(WriteClip, ChoosesTheFormatByExtension) {
+TEST(WriteRecording, ChoosesTheFormatByExtension) {
   const TemporaryFolder folder;
-  const Clip clip{Matrix{{1, 2}, {3, 4}}, {"a", "b"}, 0, ""};
+  const Recording clip{Matrix{{1, 2}, {3, 4}}, {"a", "b"}, 0, ""};
 
   for (const char* name : {"x.csv", "x.NPY"}) {
-    write_clip(folder.path() / name, clip);
-    EXPECT_EQ(read_clip(folder.path() / name).samples, clip.samples) << name;
+    write_recording(folder.path() / name, clip);
+    EXPECT_EQ(read_recording(folder.path() / name).samples, clip.samples) << name;
   }
-  EXPECT_THAT([&] { write_clip(folder.path() / "x.bvh", clip); },
+  EXPECT_THAT([&] { write_recording(folder.path() / "x.bvh", clip); },
               ThrowsMessage<FileError>(HasSubstr("expected a name ending in .csv or .npy")));
 }
 
-TEST(WriteClip, KeepsTheOldFileWhenItFails) {
+TEST(WriteRecording, KeepsTheOldFileWhenItFails) {
   const TemporaryFolder folder;
   const fs::path target = folder.file("x.csv", "old");
-  const Clip unwritable{Matrix{{1}}, {"line\nbreak"}, 0, ""};
+  const Recording unwritable{Matrix{{1}}, {"line\nbreak"}, 0, ""};
 
-  EXPECT_THROW(write_clip(target, unwritable), FileError);
+  EXPECT_THROW(write_recording(target, unwritable), FileError);
 
   EXPECT_EQ(read_file(target), "old");
 }

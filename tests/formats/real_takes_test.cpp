@@ -31,7 +31,7 @@ TEST_P(BvhTake, HasItsFramesJointsAndRate) {
   const auto file = shared ? test::shared_data(take.file) : test::debian_take(take.file);
   MOCLEAN_REQUIRE_FILE(file);
 
-  const Clip clip = read_clip(file);
+  const Recording clip = read_recording(file);
 
   EXPECT_EQ(clip.frames(), take.frames);
   EXPECT_EQ(clip.samples.cols(), 3 * take.joints);
@@ -55,7 +55,7 @@ TEST_P(AmcTake, KeepsTheBoneLengthsOfItsSkeleton) {
   const auto asf = find_skeleton(file);
   const Skeleton skeleton = parse_asf(read_file(asf), asf).skeleton;
 
-  const Clip clip = read_clip(file);
+  const Recording clip = read_recording(file);
 
   ASSERT_EQ(clip.frames(), GetParam().frames);
   ASSERT_EQ(clip.samples.cols(), 3 * GetParam().joints);
@@ -81,7 +81,7 @@ TEST(AmcTake, HasTheLengthsPrintedInTheSkeletonFile) {
   const auto file = test::shared_data("cmu/14/14_06.amc");
   MOCLEAN_REQUIRE_FILE(file);
 
-  const Clip clip = read_clip(file);
+  const Recording clip = read_recording(file);
 
   const auto length = [&](const std::string& a, const std::string& b) {
     Eigen::Vector3d difference = Eigen::Vector3d::Zero();

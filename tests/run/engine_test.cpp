@@ -39,10 +39,10 @@ TEST_F(Engine, GivesEveryFileItsOwnResultInManyBatches) {
   ASSERT_EQ(report.takes.size(), 40u);
   for (int i = 0; i < 40; ++i) {
     const std::string name = fmt::format("{:03}.npy", i);
-    const Matrix take = read_clip(folder_ / ("takes/" + name)).samples;
+    const Matrix take = read_recording(folder_ / ("takes/" + name)).samples;
     EXPECT_EQ(report.takes[static_cast<std::size_t>(i)].file.filename(), name);
-    EXPECT_EQ(read_clip(folder_ / ("clean/deeper/" + name)).samples, 0.75 * take) << name;
-    EXPECT_EQ(read_clip(folder_ / ("outliers/" + name)).samples, 0.25 * take) << name;
+    EXPECT_EQ(read_recording(folder_ / ("clean/deeper/" + name)).samples, 0.75 * take) << name;
+    EXPECT_EQ(read_recording(folder_ / ("outliers/" + name)).samples, 0.25 * take) << name;
   }
 }
 
@@ -250,7 +250,7 @@ TEST_F(Engine, ReadsTheNextTakesWhileTheDeviceWorks) {
 
   run(backend_);
 
-  EXPECT_EQ(read_clip(folder_ / "clean/deeper/b.npy").samples(0, 0), 0.75);
+  EXPECT_EQ(read_recording(folder_ / "clean/deeper/b.npy").samples(0, 0), 0.75);
 }
 
 TEST_F(Engine, TellsOfEveryTakeAndOfSegments) {

@@ -48,8 +48,8 @@ TEST_F(EachOnItsOwn, ABadFileInTheMiddleLeavesTheOthersTheirResults) {
   EXPECT_EQ(report.batches, 1);
   EXPECT_THAT(results(), ElementsAre("clean/deeper/000.npy", "clean/deeper/002.npy"));
   for (const char* name : {"000.npy", "002.npy"})
-    EXPECT_EQ(read_clip(folder_ / fmt::format("clean/deeper/{}", name)).samples,
-              0.75 * read_clip(folder_ / fmt::format("takes/{}", name)).samples);
+    EXPECT_EQ(read_recording(folder_ / fmt::format("clean/deeper/{}", name)).samples,
+              0.75 * read_recording(folder_ / fmt::format("takes/{}", name)).samples);
   EXPECT_THAT(told<TakeRead>(), ElementsAre(0, 2));
   EXPECT_THAT(told<TakeFailed>(), ElementsAre(1));
   EXPECT_THAT(told<TakeWritten>(), ElementsAre(0, 2));
@@ -57,7 +57,7 @@ TEST_F(EachOnItsOwn, ABadFileInTheMiddleLeavesTheOthersTheirResults) {
 
 TEST_F(EachOnItsOwn, ATakeThatTheMethodRefusesLeavesItsBatch) {
   for (const char* name : {"takes/a.npy", "takes/c.npy"}) {
-    Clip walk = test::synthetic_walk(60);
+    Recording walk = test::synthetic_walk(60);
     walk.samples.conservativeResize(60, 9);
     walk.columns.resize(9);
     folder_.write(name, walk);

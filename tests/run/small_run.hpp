@@ -60,8 +60,7 @@ class WrongOnce final : public Backend {
 };
 
 inline constexpr Index frames = 20;
-inline constexpr std::uint64_t take_bytes =
-    frames * 93 * sizeof(double);  // in an npy file, too
+inline constexpr std::uint64_t take_bytes = frames * 93 * sizeof(double);  // in an npy file, too
 
 /// Enough for the host to hold `takes` of the takes below at once.
 inline std::uint64_t room_for(std::uint64_t takes) { return takes * 8 * take_bytes * 4 / 3; }

@@ -34,9 +34,9 @@ accepts() {
   rm "$file"
 }
 
-refuses moclean/core/planted.hpp '#include "moclean/motion/clip.hpp"' 'may only include: itself'
+refuses moclean/core/planted.hpp '#include "moclean/motion/recording.hpp"' 'may only include: itself'
 refuses moclean/motion/planted.cpp '  #  include "moclean/formats/read_write.hpp"' 'may only include: moclean/core'
-refuses moclean/solve/planted.hpp '#include "moclean/motion/clip.hpp"' 'may only include'
+refuses moclean/solve/planted.hpp '#include "moclean/motion/recording.hpp"' 'may only include'
 refuses moclean/solve/reference/planted.cpp '#include "moclean/device/device.hpp"' 'may only include'
 refuses moclean/solve/reference/planted.cpp '#include "moclean/solve/opencl/x.hpp"' 'may only include'
 refuses moclean/metric/planted.cpp '#include "moclean/elsewhere/x.hpp"' 'in no folder of the table'

@@ -25,9 +25,9 @@ TemporaryFolder::~TemporaryFolder() {
   fs::remove_all(path_, ignored);
 }
 
-std::string TemporaryFolder::write(const std::string& name, const Clip& clip) const {
+std::string TemporaryFolder::write(const std::string& name, const Recording& clip) const {
   fs::create_directories((path_ / name).parent_path());
-  write_clip(path_ / name, clip);
+  write_recording(path_ / name, clip);
   return *this / name;
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "moclean/motion/clip.hpp"
+#include "moclean/motion/recording.hpp"
 
 namespace moclean::test {
 
@@ -20,7 +20,7 @@ class TemporaryFolder {
   std::string operator/(const std::string& name) const { return (path_ / name).string(); }
 
   /// Writes a clip and returns its path.
-  std::string write(const std::string& name, const Clip& clip) const;
+  std::string write(const std::string& name, const Recording& clip) const;
 
   /// Writes a text file and returns its path.
   std::string write_text(const std::string& name, const std::string& text) const;

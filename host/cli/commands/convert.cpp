@@ -22,9 +22,9 @@ struct ConvertOptions {
 };
 
 ExitCode run(const ConvertOptions& options) {
-  require_writable_clip(options.output);
-  const Clip clip = read_input(options.input, options.reading);
-  write_clip(options.output, clip);
+  require_writable_recording(options.output);
+  const Recording clip = read_input(options.input, options.reading);
+  write_recording(options.output, clip);
   fmt::print("{} -> {}: {} frames x {} columns\n", options.input.string(), options.output.string(),
              clip.frames(), clip.samples.cols());
   return ExitCode::done;

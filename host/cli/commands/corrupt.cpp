@@ -28,23 +28,19 @@ struct CorruptOptions {
   InputOptions reading;
 };
 
-// 1 where the noise touched an entry, else 0, in the shape of the clip.
-Clip mask_of(const Corrupted& noisy) {
-  Clip mask = noisy.clip;
-  mask.samples = noisy.touched.cast<double>();
-  return mask;
-}
+// 1 where the noise touched an entry, else 0.
+Recording mask_of(const Corrupted& noisy) { return like(noisy.clip, noisy.touched.cast<double>()); }
 
 ExitCode run(const CorruptOptions& options) {
   const NoiseChain noise = parse_noise_chain(options.noise);
-  require_writable_clip(options.output);
-  if (!options.mask.empty()) require_writable_clip(options.mask);
+  require_writable_recording(options.output);
+  if (!options.mask.empty()) require_writable_recording(options.mask);
   if (options.mask == options.output)
     throw ArgumentError(fmt::format("-o and --mask would both write {}", options.output.string()));
-  const Clip clean = read_input(options.input, options.reading);
+  const Recording clean = read_input(options.input, options.reading);
   const Corrupted noisy = corrupt(clean, noise, options.seed);
   AtomicFile clip = write_temporary(options.output, noisy.clip);
-  if (!options.mask.empty()) write_clip(options.mask, mask_of(noisy));
+  if (!options.mask.empty()) write_recording(options.mask, mask_of(noisy));
   clip.commit();
   const bool any_left = !(clean.samples - noisy.clip.samples).array().isNaN().all();
   fmt::print("{} -> {}: {} of {} entries changed, FD {}\n", options.input.string(),

@@ -7,7 +7,6 @@
 
 #include "moclean/core/error.hpp"
 #include "moclean/formats/formats.hpp"
-#include "moclean/formats/read_skeleton.hpp"
 #include "moclean/formats/read_write.hpp"
 #include "moclean/metric/figures.hpp"
 #include "moclean/metric/metric.hpp"
@@ -36,7 +35,7 @@ struct Value {
   double value;
 };
 
-Json comparison_record(const Comparison& comparison, const Clip& truth,
+Json comparison_record(const Comparison& comparison, const Recording& truth,
                        const std::vector<Value>& values) {
   Json record;
   record["fd"] = comparison.fd;
@@ -61,7 +60,7 @@ Json comparison_record(const Comparison& comparison, const Clip& truth,
 }
 
 // `length/frame^2` with the unit of the clip for length.
-std::string unit_of(const Figure& figure, const Clip& truth) {
+std::string unit_of(const Figure& figure, const Recording& truth) {
   std::string unit(figure.unit);
   const std::size_t length = unit.find("length");
   if (length == unit.npos) return unit;
@@ -69,14 +68,14 @@ std::string unit_of(const Figure& figure, const Clip& truth) {
   return unit.starts_with("/") ? "1" + unit : unit;
 }
 
-void print_figures(const std::vector<Value>& values, const Clip& truth) {
+void print_figures(const std::vector<Value>& values, const Recording& truth) {
   for (const auto& [figure, value] : values)
     fmt::print("{:<16} {:<12.6g} {:<12} {}\n", figure.name, value, unit_of(figure, truth),
                figure.description);
   fmt::print("\n");
 }
 
-void print_comparison(const Comparison& comparison, const Clip& truth,
+void print_comparison(const Comparison& comparison, const Recording& truth,
                       const std::vector<Value>& values) {
   const std::string unit = truth.unit.empty() ? "" : " " + truth.unit;
   fmt::print("compared         {} frames x {} columns\n", truth.frames(), truth.samples.cols());
@@ -100,16 +99,14 @@ void print_comparison(const Comparison& comparison, const Clip& truth,
 
 // The frames that --frames asks for. It counts in the truth; a file as long as the truth is cut
 // alike.
-Clip select(const Clip& clip, Index frames_of_truth, const FrameRange& frames,
-            const std::filesystem::path& file) {
+Recording select(const Recording& clip, Index frames_of_truth, const FrameRange& frames,
+                 const std::filesystem::path& file) {
   if (!frames.first && !frames.last) return clip;
   return clip.frames() == frames_of_truth ? select_frames(clip, frames, file) : clip;
 }
 
-std::vector<Value> measured(const EvaluateOptions& options, const Evaluation& evaluation) {
-  std::vector<int> parents;
-  const auto skeleton = read_skeleton(options.truth, {.skeleton = options.reading.skeleton});
-  if (skeleton) parents = joint_parents(*skeleton, evaluation.truth);
+std::vector<Value> measured(const Evaluation& evaluation) {
+  const std::vector<int> parents = joint_parents(evaluation.truth);
   Evaluation complete = evaluation;
   complete.parents = parents;
   std::vector<Value> values;
@@ -121,23 +118,23 @@ std::vector<Value> measured(const EvaluateOptions& options, const Evaluation& ev
 ExitCode run(const EvaluateOptions& options) {
   InputOptions whole = options.reading;
   whole.frames = {};
-  const Clip all = read_input(options.truth, whole);
+  const Recording all = read_input(options.truth, whole);
   const auto read = [&](const std::filesystem::path& file) {
     return select(read_input(file, whole), all.frames(), options.reading.frames, file);
   };
-  const Clip truth = select(all, all.frames(), options.reading.frames, options.truth);
-  const Clip estimate = read(options.estimate);
+  const Recording truth = select(all, all.frames(), options.reading.frames, options.truth);
+  const Recording estimate = read(options.estimate);
   const Comparison comparison = compare(truth, estimate);
 
   Evaluation evaluation{truth, estimate};
   evaluation.outlier_threshold = options.threshold;
   Mask touched;
-  Clip outliers;
+  Matrix outliers;
   if (!options.mask.empty()) touched = read(options.mask).samples.array() != 0;
-  if (!options.outliers.empty()) outliers = read(options.outliers);
+  if (!options.outliers.empty()) outliers = read(options.outliers).samples;
   if (!options.mask.empty()) evaluation.touched = &touched;
   if (!options.outliers.empty()) evaluation.outliers = &outliers;
-  const std::vector<Value> values = measured(options, evaluation);
+  const std::vector<Value> values = measured(evaluation);
 
   if (options.json)
     fmt::print("{}", to_text(comparison_record(comparison, truth, values)));

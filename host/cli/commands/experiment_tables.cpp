@@ -1,4 +1,5 @@
 #include <cstdio>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -29,10 +30,11 @@ Takes read_takes(const TableOptions& options) {
   for (const fs::path& file : expand_folders(options.inputs)) {
     const InputOptions reading{
         .frames = options.frames, .rate = options.rate, .skeleton = options.skeleton};
+    Recording truth = read_solvable(file, reading);
     ExperimentTake take{.name = file.stem().string(),
                         .label = file.filename().string(),
                         .file = file,
-                        .clip = read_solvable(file, reading),
+                        .clip = like(truth, std::move(truth.samples)),  // every cell copies it
                         .excluded = {}};
     const bool all = !options.frames.first && !options.frames.last;
     const PaperSequence* sequence = all ? find_sequence(take.name) : nullptr;

@@ -26,7 +26,7 @@ std::string format_name(const std::filesystem::path& file) {
 }
 
 // What the file does not state is null.
-Json info_record(const std::filesystem::path& file, const Clip& clip) {
+Json info_record(const std::filesystem::path& file, const Recording& clip) {
   const bool has_rate = clip.frame_rate > 0;
   Json record;
   record["file"] = file.string();
@@ -43,7 +43,7 @@ Json info_record(const std::filesystem::path& file, const Clip& clip) {
   return record;
 }
 
-void print_info(const std::filesystem::path& file, const Clip& clip) {
+void print_info(const std::filesystem::path& file, const Recording& clip) {
   fmt::print("format    {}\n", format_name(file));
   fmt::print("frames    {}\n", clip.frames());
   fmt::print("columns   {}\n", clip.samples.cols());
@@ -62,7 +62,7 @@ void print_info(const std::filesystem::path& file, const Clip& clip) {
 }
 
 ExitCode run(const InfoOptions& options) {
-  const Clip clip = read_input(options.file, options.reading);
+  const Recording clip = read_input(options.file, options.reading);
   if (options.json)
     fmt::print("{}", to_text(info_record(options.file, clip)));
   else

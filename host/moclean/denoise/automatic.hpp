@@ -74,7 +74,8 @@ class AutomaticDenoiser final : public Denoiser {
   AutomaticDenoiser(const Automatic& method, Backend& backend, int jobs = 1)
       : method_(method), backend_(backend), jobs_(jobs) {}
 
-  std::vector<Denoised> denoise(std::span<const Clip> takes, const Monitor& monitor = {}) override;
+  std::vector<Denoised> denoise(std::span<const Recording> takes,
+                                const Monitor& monitor = {}) override;
 
  private:
   Automatic method_;

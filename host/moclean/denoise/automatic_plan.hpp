@@ -5,7 +5,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "moclean/motion/clip.hpp"
+#include "moclean/motion/recording.hpp"
 #include "moclean/segment/plan.hpp"
 #include "moclean/solve/backend.hpp"
 
@@ -27,7 +27,7 @@ inline constexpr std::uint64_t copies_held_by_plans = 14;
 /// width are solved in batches on the backend, about 35 times the frames of the takes; the result
 /// of a take does not depend on the others. Throws what Backend::solve() throws, Cancelled on a
 /// stop.
-std::vector<SegmentPlan> automatic_plans(std::span<const Clip> takes,
+std::vector<SegmentPlan> automatic_plans(std::span<const Recording> takes,
                                          std::span<const Index> segments, RobustPca method,
                                          Backend& backend, const std::stop_token& stop = {});
 

@@ -86,10 +86,11 @@ class ChainDenoiser final : public Denoiser {
   /// See Denoiser. Progress counts the segments of all matrix methods; a chain of filters reports
   /// nothing. A stop takes effect between filters. Throws ArgumentError for a take without the
   /// frame rate that a filter needs.
-  std::vector<Denoised> denoise(std::span<const Clip> takes, const Monitor& monitor = {}) override;
+  std::vector<Denoised> denoise(std::span<const Recording> takes,
+                                const Monitor& monitor = {}) override;
 
  private:
-  std::vector<Denoised> solve(const Step& step, std::span<const Clip> takes,
+  std::vector<Denoised> solve(const Step& step, std::span<const Recording> takes,
                               const Monitor& monitor);
 
   Chain chain_;

@@ -39,7 +39,8 @@ class LowRankDenoiser final : public Denoiser {
   LowRankDenoiser(Segmentation segmentation, Method method, Backend& backend, int jobs = 1)
       : segmentation_(segmentation), method_(std::move(method)), backend_(backend), jobs_(jobs) {}
 
-  std::vector<Denoised> denoise(std::span<const Clip> takes, const Monitor& monitor = {}) override;
+  std::vector<Denoised> denoise(std::span<const Recording> takes,
+                                const Monitor& monitor = {}) override;
 
  private:
   Segmentation segmentation_;

@@ -17,7 +17,8 @@ class AmcParser {
  public:
   AmcParser(std::string_view text, const std::filesystem::path& file,
             const AcclaimSkeleton& skeleton)
-      : scanner_(text, file, {.comment = '#'}),
+      : text_(text),
+        scanner_(text, file, {.comment = '#'}),
         bones_(skeleton.skeleton.bones),
         radians_per_angle_(skeleton.radians_per_angle),
         seen_in_(bones_.size(), 0),
@@ -32,10 +33,16 @@ class AmcParser {
 
   Matrix parse() {
     header();
+    document_.header = text_.substr(0, text_.size() - scanner_.bytes_left());
+    document_.radians_per_angle = radians_per_angle_;
     do frame();
     while (!scanner_.at_end());
+    document_.first_frame = number_ - frames_.count() + 1;
     return frames_.take();
   }
+
+  // After parse().
+  AmcDocument document() { return std::move(document_); }
 
  private:
   void header() {
@@ -72,6 +79,7 @@ class AmcParser {
     if (std::exchange(seen_in_[bone], frames_.count()) == frames_.count())
       scanner_.fail(
           fmt::format("frame {} gives bone {} twice", number_, excerpt(bones_[bone].name)));
+    if (frames_.count() == 1) document_.order.push_back(bone);
     const std::vector<Channel>& channels = bones_[bone].channels;
     double* const values = frame_ + first_channel_[bone];
     // The file lists a bone's degrees of freedom in the reverse order of its channels.
@@ -109,6 +117,7 @@ class AmcParser {
                               excerpt(bones_[bone].name), number_));
   }
 
+  std::string_view text_;
   TextScanner scanner_;
   const std::vector<Bone>& bones_;
   double radians_per_angle_;
@@ -120,21 +129,23 @@ class AmcParser {
   RowCollector frames_;
   double* frame_ = nullptr;  // the row being read
   Index number_ = 0;         // of the frame being read, as the file counts
+  AmcDocument document_;
 };
 
-Clip read_amc(std::string_view content, const std::filesystem::path& file,
-              const ReadOptions& options) {
+Recording read_amc(std::string_view content, const std::filesystem::path& file,
+                   const ReadOptions& options) {
   const std::filesystem::path asf =
       options.skeleton.empty() ? find_skeleton(file) : options.skeleton;
-  return joint_positions(parse_amc(content, file, parse_asf(read_file(asf), asf)));
+  return joint_positions(parse_amc(content, file, read_asf(asf)));
 }
 
 }  // namespace
 
 SkeletonMotion parse_amc(std::string_view text, const std::filesystem::path& file,
                          const AcclaimSkeleton& skeleton) {
-  Matrix channels = AmcParser(text, file, skeleton).parse();
-  return {skeleton.skeleton, std::move(channels), 0, "ASF units"};
+  AmcParser parser(text, file, skeleton);
+  Matrix channels = parser.parse();
+  return {skeleton.skeleton, std::move(channels), 0, "ASF units", parser.document()};
 }
 
 constinit const Format amc_format = {

@@ -1,12 +1,22 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "moclean/formats/asf.hpp"
 #include "moclean/formats/format.hpp"
 
 namespace moclean {
+
+/// What an AMC file says beside skeleton and channels; the Recording::source of one.
+struct AmcDocument {
+  std::string header;              ///< all text before the first frame, as written
+  double radians_per_angle = 0;    ///< of the angles in it
+  Index first_frame = 0;           ///< its number
+  std::vector<std::size_t> order;  ///< bones of the skeleton as the first frame lists them
+};
 
 /// Reads Acclaim motion (AMC) text over its skeleton; `file` names it in messages. Throws
 /// FileError.

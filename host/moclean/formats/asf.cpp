@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "moclean/formats/file.hpp"
 #include "moclean/formats/text_scanner.hpp"
 
 namespace moclean {
@@ -234,6 +235,10 @@ class AsfParser {
 
 AcclaimSkeleton parse_asf(std::string_view text, const std::filesystem::path& file) {
   return AsfParser(text, file).parse();
+}
+
+AcclaimSkeleton read_asf(const std::filesystem::path& file) {
+  return parse_asf(read_file(file), file);
 }
 
 }  // namespace moclean

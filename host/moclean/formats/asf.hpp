@@ -27,4 +27,7 @@ struct AcclaimSkeleton {
 /// `l` (bone length) is refused: no file at hand shows whether it adds or multiplies.
 AcclaimSkeleton parse_asf(std::string_view text, const std::filesystem::path& file);
 
+/// That of a file.
+AcclaimSkeleton read_asf(const std::filesystem::path& file);
+
 }  // namespace moclean

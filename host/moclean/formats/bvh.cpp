@@ -25,19 +25,29 @@ constexpr std::array<std::pair<std::string_view, Channel>, 6> channel_names = {{
 class BvhParser {
  public:
   BvhParser(std::string_view text, const std::filesystem::path& file)
-      : scanner_(text, file, {.marks = "{}"}) {}
+      : text_(text), scanner_(text, file, {.marks = "{}"}) {}
 
   SkeletonMotion parse() {
     scanner_.expect("HIERARCHY");
-    while (!scanner_.accept("MOTION")) item();
+    while (!at_motion()) item();
     if (open_ >= 0)
       scanner_.fail(fmt::format("expected '}}' of joint {} before MOTION", excerpt(bone().name)));
     if (result_.skeleton.channels() == 0) scanner_.fail("no joint has a channel");
     frames();
+    result_.source = std::move(document_);
     return std::move(result_);
   }
 
  private:
+  // Keeps all text before MOTION.
+  bool at_motion() {
+    scanner_.peek();
+    const std::size_t before = text_.size() - scanner_.bytes_left();
+    if (!scanner_.accept("MOTION")) return false;
+    document_.hierarchy = text_.substr(0, before);
+    return true;
+  }
+
   // The hierarchy may be nested as deep as it likes: `open_` and the parents are the only stack.
   void item() {
     if (open_ < 0) {
@@ -113,6 +123,7 @@ class BvhParser {
     const double seconds = scanner_.number();
     if (seconds <= 0) scanner_.fail("expected a positive frame time");
     scanner_.expect_line_end();
+    document_.frame_time = seconds;
     result_.frame_rate = rate_from_period(seconds);
 
     // Memory for no more frames than the rest of the file can hold, two bytes a number at least,
@@ -148,13 +159,16 @@ class BvhParser {
 
   Bone& bone() { return result_.skeleton.bones[static_cast<std::size_t>(open_)]; }
 
+  std::string_view text_;
   TextScanner scanner_;
   SkeletonMotion result_;
+  BvhDocument document_;
   std::vector<bool> has_offset_;  // per joint
   int open_ = -1;                 // the joint whose braces are open
 };
 
-Clip read_bvh(std::string_view content, const std::filesystem::path& file, const ReadOptions&) {
+Recording read_bvh(std::string_view content, const std::filesystem::path& file,
+                   const ReadOptions&) {
   return joint_positions(parse_bvh(content, file));
 }
 

@@ -1,12 +1,20 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 #include "moclean/formats/format.hpp"
 #include "moclean/motion/skeleton.hpp"
 
 namespace moclean {
+
+/// What a BVH file says beside skeleton and channels; the Recording::source of one.
+struct BvhDocument {
+  std::string
+      hierarchy;  ///< all text before MOTION, as written: End Sites, replaced offsets, layout
+  double frame_time = 0;  ///< seconds, as written
+};
 
 /// Reads Biovision Hierarchy text; `file` names it in messages. Throws FileError.
 ///

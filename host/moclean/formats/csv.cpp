@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -27,6 +28,11 @@ std::pair<std::string_view, std::string_view> setting(std::string_view comment) 
   const std::size_t colon = comment.find(':');
   if (colon == std::string_view::npos) return {};
   return {trim(comment.substr(0, colon)), trim(comment.substr(colon + 1))};
+}
+
+std::optional<UpAxis> up_axis(std::string_view letter) {
+  if (letter.size() != 1 || letter < "x" || letter > "z") return std::nullopt;
+  return static_cast<UpAxis>(letter[0] - 'x');
 }
 
 // The names of a header line, and the separator between them.
@@ -113,7 +119,7 @@ class CsvParser {
   CsvParser(std::string_view text, const std::filesystem::path& file)
       : scanner_(text, file, {.blanks = " "}) {}
 
-  Clip parse() {
+  Recording parse() {
     comments();
     header();
     if (scanner_.at_end()) scanner_.fail_expected("a line of samples");
@@ -130,6 +136,7 @@ class CsvParser {
     for (; scanner_.peek() == '#'; scanner_.next_line()) {
       const auto [name, value] = setting(scanner_.text_before('\0'));
       if (name == "unit") clip_.unit = value;
+      if (name == "up") clip_.up = up_axis(value);
       if (name != "frame_rate") continue;
       const auto [after, error] =
           std::from_chars(value.data(), value.data() + value.size(), clip_.frame_rate);
@@ -190,7 +197,7 @@ class CsvParser {
   std::size_t width() const { return clip_.columns.size() + (has_time_ ? 1 : 0); }
 
   TextScanner scanner_;
-  Clip clip_;
+  Recording clip_;
   char separator_ = ',';
   bool has_time_ = false;
   std::vector<double> times_;
@@ -205,10 +212,11 @@ std::string header_cell(const std::string& name) {
   return fmt::format("\"{}\"", cell);
 }
 
-std::string head(const Clip& clip) {
+std::string head(const Recording& clip) {
   std::string text;
   if (clip.frame_rate > 0) text += fmt::format("# frame_rate: {}\n", clip.frame_rate);
   if (!clip.unit.empty()) text += fmt::format("# unit: {}\n", clip.unit);
+  if (clip.up) text += fmt::format("# up: {}\n", "xyz"[static_cast<int>(*clip.up)]);
   for (std::size_t c = 0; c < clip.columns.size(); ++c) {
     if (c > 0) text += ',';
     text += header_cell(clip.columns[c]);
@@ -223,17 +231,18 @@ char* put_number(char* position, double value) {
   return std::to_chars(position, position + longest_number, value).ptr;
 }
 
-Clip read_csv(std::string_view content, const std::filesystem::path& file, const ReadOptions&) {
+Recording read_csv(std::string_view content, const std::filesystem::path& file,
+                   const ReadOptions&) {
   return parse_csv(content, file);
 }
 
 }  // namespace
 
-Clip parse_csv(std::string_view text, const std::filesystem::path& file) {
+Recording parse_csv(std::string_view text, const std::filesystem::path& file) {
   return CsvParser(text, file).parse();
 }
 
-void write_csv(AtomicFile& file, const Clip& clip) {
+void write_csv(AtomicFile& file, const Recording& clip) {
   for (const std::string& name : clip.columns)
     if (name.find_first_of("\r\n") != std::string::npos)
       throw FileError(file.target(), "cannot be written: the column name " + excerpt(name) +
@@ -264,7 +273,7 @@ constinit const Format csv_format = {
     .notes =
         "a header of column names, `# frame_rate: HZ` or a time column; empty or `nan` is a "
         "missing sample",
-    .content = {.names = true, .frame_rate = true, .unit = true, .gaps = true},
+    .content = {.names = true, .frame_rate = true, .unit = true, .up = true, .gaps = true},
     .read = read_csv,
     .write = write_csv,
 };

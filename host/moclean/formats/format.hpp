@@ -4,14 +4,16 @@
 #include <string_view>
 
 #include "moclean/formats/file.hpp"
-#include "moclean/motion/clip.hpp"
+#include "moclean/motion/recording.hpp"
 
 namespace moclean {
 
 /// What a reader cannot find in the file itself.
 struct ReadOptions {
-  std::filesystem::path skeleton;  ///< .asf for an .amc; empty: look in the .amc's folder
-  double rate = 0;                 ///< Hz for files that state none; 0: leave unknown
+  /// .asf: that of an .amc, else looked for in the .amc's folder; of other files without a skeleton
+  /// of their own, if they have its joints.
+  std::filesystem::path skeleton;
+  double rate = 0;  ///< Hz for files that state none; 0: leave unknown
 };
 
 /// What files of a format say beside the positions.
@@ -19,8 +21,9 @@ struct FormatContent {
   bool names = false;       ///< of columns or joints
   bool frame_rate = false;  ///< a file may still leave it out
   bool unit = false;        ///< likewise
-  bool skeleton = false;
-  bool gaps = false;  ///< a sample that was not observed can be told from any number
+  bool up = false;          ///< likewise
+  bool skeleton = false;    ///< and its channels
+  bool gaps = false;        ///< a sample that was not observed can be told from any number
 };
 
 /// A file format: all that the program knows of it. Each has a pair of files, NAME.hpp and
@@ -33,11 +36,11 @@ struct Format {
   FormatContent content = {};
 
   /// Makes a recording of the whole content of `file`. Throws FileError. Null: cannot be read.
-  Clip (*read)(std::string_view content, const std::filesystem::path& file,
-               const ReadOptions& options) = nullptr;
+  Recording (*read)(std::string_view content, const std::filesystem::path& file,
+                    const ReadOptions& options) = nullptr;
 
-  /// Throws FileError for a clip that the format has no way to say. Null: cannot be written.
-  void (*write)(AtomicFile& file, const Clip& clip) = nullptr;
+  /// Throws FileError for a recording that the format has no way to say. Null: cannot be written.
+  void (*write)(AtomicFile& file, const Recording& recording) = nullptr;
 };
 
 }  // namespace moclean

@@ -218,23 +218,24 @@ Matrix samples(std::string_view bytes, const Layout& layout) {
   return result;
 }
 
-Clip read_npy(std::string_view content, const std::filesystem::path& file, const ReadOptions&) {
+Recording read_npy(std::string_view content, const std::filesystem::path& file,
+                   const ReadOptions&) {
   return parse_npy(content, file);
 }
 
 }  // namespace
 
-Clip parse_npy(std::string_view bytes, const std::filesystem::path& file) {
+Recording parse_npy(std::string_view bytes, const std::filesystem::path& file) {
   const Layout layout = take_layout(bytes, file);
   check_size(layout, bytes.size(), file);
-  Clip clip;
+  Recording clip;
   clip.samples =
       layout.item_size == 4 ? samples<float>(bytes, layout) : samples<double>(bytes, layout);
   clip.columns = default_column_names(clip.samples.cols());
   return clip;
 }
 
-void write_npy(AtomicFile& file, const Clip& clip) {
+void write_npy(AtomicFile& file, const Recording& clip) {
   std::string header =
       fmt::format("{{'descr': '{}f8', 'fortran_order': False, 'shape': ({}, {}), }}", native_order,
                   clip.samples.rows(), clip.samples.cols());

@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "moclean/formats/format.hpp"
-#include "moclean/motion/clip.hpp"
+#include "moclean/motion/recording.hpp"
 
 namespace moclean {
 
@@ -14,11 +14,11 @@ namespace moclean {
 /// the other axes, as in [frames x joints x 3], become columns in C order, and a one-dimensional
 /// array is one column. Columns get default_column_names(); the format states no frame rate. Throws
 /// FileError if the bytes are not exactly such a file.
-Clip parse_npy(std::string_view bytes, const std::filesystem::path& file);
+Recording parse_npy(std::string_view bytes, const std::filesystem::path& file);
 
 /// Writes the samples as float64 [frames x columns] in C order, format 1.0; names, frame rate and
 /// unit have no place in it. Throws FileError.
-void write_npy(AtomicFile& file, const Clip& clip);
+void write_npy(AtomicFile& file, const Recording& clip);
 
 /// NumPy arrays (.npy).
 extern const Format npy_format;

@@ -1,30 +1,43 @@
 #include "moclean/formats/read_write.hpp"
 
+#include <utility>
+
 #include "moclean/core/error.hpp"
+#include "moclean/formats/asf.hpp"
 #include "moclean/formats/formats.hpp"
 
 namespace moclean {
 
-Clip read_clip(const std::filesystem::path& file, const ReadOptions& options) {
+namespace {
+
+void give_skeleton(const std::filesystem::path& asf, Recording& recording) {
+  Skeleton skeleton = read_asf(asf).skeleton;
+  if (!joint_parents(skeleton, recording).empty()) recording.skeleton = std::move(skeleton);
+}
+
+}  // namespace
+
+Recording read_recording(const std::filesystem::path& file, const ReadOptions& options) {
   const Format* format = format_of(file);
   if (!format || !can_read(*format))
     throw FileError(file, "expected a file ending in " + any_extension(can_read));
-  Clip clip = format->read(read_file(file), file, options);
-  if (clip.frame_rate == 0) clip.frame_rate = options.rate;
-  return clip;
+  Recording recording = format->read(read_file(file), file, options);
+  if (recording.frame_rate == 0) recording.frame_rate = options.rate;
+  if (!recording.skeleton && !options.skeleton.empty()) give_skeleton(options.skeleton, recording);
+  return recording;
 }
 
-void write_clip(const std::filesystem::path& file, const Clip& clip) {
-  write_temporary(file, clip).commit();
+void write_recording(const std::filesystem::path& file, const Recording& recording) {
+  write_temporary(file, recording).commit();
 }
 
-AtomicFile write_temporary(const std::filesystem::path& file, const Clip& clip) {
+AtomicFile write_temporary(const std::filesystem::path& file, const Recording& recording) {
   const Format* format = format_of(file);
   if (!format || !can_write(*format))
     throw FileError(file,
                     "cannot be written: expected a name ending in " + any_extension(can_write));
   AtomicFile target(file);
-  format->write(target, clip);
+  format->write(target, recording);
   target.close();
   return target;
 }

@@ -8,16 +8,17 @@
 #include <vector>
 
 #include "moclean/denoise/denoiser.hpp"
-#include "moclean/motion/clip.hpp"
+#include "moclean/motion/recording.hpp"
 
 namespace moclean {
 
 /// A take before and after cleaning.
 struct ReportTake {
-  Clip noisy;
-  Clip clean = {};                 ///< same shape and columns as `noisy`
-  std::optional<Clip> truth = {};  ///< same shape; the report then says whether the take got better
-  Clip outliers = {};              ///< E, same shape: what was taken away; NaN where there is a gap
+  Recording noisy;
+  Recording clean = {};  ///< same shape and columns as `noisy`
+  std::optional<Recording> truth =
+      {};                   ///< same shape; the report then says whether the take got better
+  Recording outliers = {};  ///< E, same shape: what was taken away; NaN where there is a gap
   std::vector<int> parents =
       {};  ///< per joint of joints(noisy): the joint it hangs on, -1 for a root;
            ///< empty: no skeleton, joints are drawn as a cloud of points

@@ -48,7 +48,7 @@ class Solver {
   Solver(SolveTask task, const Job& job, Backend& backend, RunLog& log, const std::stop_token& stop)
       : task_(task), denoiser_(job.chain, &backend, job.jobs), log_(log), stop_(stop) {}
 
-  std::vector<Denoised> solve(std::span<const Clip> clips, Index segments, Expected expected) {
+  std::vector<Denoised> solve(std::span<const Recording> clips, Index segments, Expected expected) {
     const BusyClock::Work work(clock_);
     const Monitor monitor{
         .report =
@@ -139,7 +139,7 @@ class Run {
       record(batch.clips[i], batch.takes[i]);
     }
     if (verifier_) verify(batch, solved(*verifier_, batch, expected));
-    keep_if(batch, job_.jobs, [&](const Clip& clip, TakeInHand& take) { finish(clip, take); });
+    keep_if(batch, job_.jobs, [&](const Recording& clip, TakeInHand& take) { finish(clip, take); });
     if (batch.size() > 0) ++report_.batches;
   }
 
@@ -147,7 +147,7 @@ class Run {
     if (job_.truths.empty()) return;
     InputOptions reading = job_.reading;
     if (job_.truth_frames) reading.frames = *job_.truth_frames;
-    keep_if(batch, 1, [&](const Clip& clip, TakeInHand& take) {
+    keep_if(batch, 1, [&](const Recording& clip, TakeInHand& take) {
       take.truth = read_truth(job_.truths[take.index], reading, clip);
     });
   }
@@ -175,7 +175,7 @@ class Run {
   // more than the device's share of the memory is alone in its batch from the start.
   std::vector<Denoised> solved_alone(Solver& solver, TakeBatch& batch, Expected expected) {
     std::vector<Denoised> results;
-    keep_if(batch, 1, [&](const Clip& clip, const TakeInHand& take) {
+    keep_if(batch, 1, [&](const Recording& clip, const TakeInHand& take) {
       try {
         results.push_back(std::move(solver.solve({&clip, 1}, take.segments, expected).front()));
       } catch (const TakeError& error) {
@@ -187,7 +187,7 @@ class Run {
     return results;
   }
 
-  void record(const Clip& clip, const TakeInHand& take) {
+  void record(const Recording& clip, const TakeInHand& take) {
     TakeReport& report = report_.takes[take.index];
     report.unit = clip.unit;
     report.frames = clip.frames();
@@ -204,7 +204,7 @@ class Run {
     std::string differences;
     for (std::size_t i = 0; i < batch.size(); ++i) {
       const Denoised& result = batch.takes[i].result;
-      const Matrix difference = difference_of(result.clip.samples, expected[i].clip.samples);
+      const Matrix difference = difference_of(result.motion, expected[i].motion);
       TakeReport& report = report_.takes[batch.takes[i].index];
       report.verification = {agreement(result, expected[i]), bounds,
                              difference.cwiseAbs().maxCoeff()};
@@ -214,7 +214,7 @@ class Run {
     if (!differences.empty() && log_.all_or_nothing())
       throw Error("not verified, nothing was written; the device and the reference differ:" +
                   differences);
-    keep_if(batch, 1, [&](const Clip&, const TakeInHand& take) {
+    keep_if(batch, 1, [&](const Recording&, const TakeInHand& take) {
       const TakeReport& report = report_.takes[take.index];
       if (!within(report.verification->agreement, bounds))
         throw Error("not verified, not written: " + agreement_line(report));
@@ -222,34 +222,35 @@ class Run {
   }
 
   // What the method has made becomes what the job asks for.
-  void finish(const Clip& clip, TakeInHand& take) {
+  void finish(const Recording& clip, TakeInHand& take) {
     TakeReport& report = report_.takes[take.index];
     if (job_.max_gap) leave_long_gaps(clip, *job_.max_gap, take.result);
-    if (job_.keep_observed) keep_observed(clip, take.result);
-    Clip status = sample_status(clip, take.result);
-    report.status = count_status(status);
-    report.changed = change_of(clip, take.result);
-    if (!job_.outputs.masks.empty()) take.status = std::move(status);
+    const Mask trusted = trusted_samples(clip, take.result);
+    if (job_.keep_observed) keep_observed(clip, trusted, take.result);
+    report.status = count_status(clip, take.result, trusted);
+    report.changed = change_of(clip, take.result.motion, report.status);
+    if (!job_.outputs.masks.empty()) take.mask = status_numbers(clip, take.result, trusted);
     if (!take.truth) return;
     const Matrix& truth = take.truth->samples;
     report.truth = TruthReport{.file = job_.truths[take.index],
                                .fd_noisy = frobenius_distance(truth, clip.samples),
-                               .fd_clean = frobenius_distance(truth, take.result.clip.samples)};
+                               .fd_clean = frobenius_distance(truth, take.result.motion)};
     if (job_.outputs.reports.empty()) take.truth.reset();
   }
 
   void write(TakeBatch& batch) {
     for (std::size_t i = 0; i < batch.size(); ++i) {
       TakeInHand& take = batch.takes[i];
+      Recording& clean = batch.clips[i];
       std::optional<Report> page;
-      if (!job_.outputs.reports.empty()) page = page_of(std::move(batch.clips[i]), take);
-      batch.clips[i] = {};
-      take.memory.resize(take.memory.bytes() / rules_.copies_solving * rules_.copies_writing);
+      if (!job_.outputs.reports.empty()) page = page_of(clean, take);
+      clean.samples = std::move(take.result.motion);
+      take.memory.resize(bytes_of(clean, rules_.copies_writing));
       writer_.put(
           {.index = take.index,
-           .clip = std::move(take.result.clip),
+           .clean = std::move(clean),
            .outliers = std::move(take.result.outliers),
-           .mask = std::move(take.status),
+           .mask = std::move(take.mask),
            .sigma = job_.outputs.sigmas.empty() ? std::nullopt : std::move(take.result.sigma),
            .report = std::move(page),
            .memory = std::move(take.memory)});
@@ -257,12 +258,15 @@ class Run {
     }
   }
 
-  // The clean take and the outliers come to it when they are written.
-  Report page_of(Clip noisy, TakeInHand& take) const {
+  // Takes the samples of the take. The clean take and the outliers come to it when they are
+  // written.
+  Report page_of(Recording& noisy, TakeInHand& take) const {
     const TakeReport& report = report_.takes[take.index];
-    ReportTake parts{.noisy = std::move(noisy), .segments = report.segments};
-    parts.truth = std::move(take.truth);
-    parts.parents = parents_of(job_, take.index, parts.noisy);
+    std::vector<int> parents = parents_of(noisy, take.truth ? &*take.truth : nullptr);
+    ReportTake parts{.noisy = like(noisy, std::move(noisy.samples)),
+                     .truth = std::move(take.truth),
+                     .parents = std::move(parents),
+                     .segments = report.segments};
     return take_page(job_, backend_, report, std::move(parts));
   }
 

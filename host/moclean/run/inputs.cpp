@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/core/usable.hpp"
 #include "moclean/formats/formats.hpp"
 #include "moclean/formats/read_write.hpp"
 #include "moclean/solve/backend.hpp"
@@ -27,28 +28,25 @@ std::vector<fs::path> recordings_in(const fs::path& folder) {
 }
 
 // The solvers refuse such samples, too, but know neither the file nor the frame in it.
-void require_solvable(const Clip& clip, const FrameRange& frames, const fs::path& file,
+void require_solvable(const Recording& clip, const FrameRange& frames, const fs::path& file,
                       const InputNeeds& needs) {
   if (!needs.frame_rate_for.empty() && !(clip.frame_rate > 0))
     throw FileError(file, fmt::format("states no frame rate, which {} needs; give --rate HZ",
                                       needs.frame_rate_for));
   if (clip.samples.size() == 0) throw FileError(file, "holds no samples");
-  for (Index f = 0; f < clip.frames(); ++f)
-    for (Index c = 0; c < clip.samples.cols(); ++c) {
-      const double sample = clip.samples(f, c);
-      if (std::abs(sample) <= largest_entry) continue;
-      if (!needs.every_sample && std::isnan(sample)) continue;
-      throw FileError(
-          file, fmt::format("frame {}, column {} is {}; {}", frames.first.value_or(0) + f,
-                            clip.columns[static_cast<std::size_t>(c)], sample,
-                            std::isnan(sample) ? "missing samples are not supported by this method"
-                                               : "expected a number of sensible size"));
-    }
+  const auto place = first_unusable(clip.samples, !needs.every_sample, largest_entry);
+  if (!place) return;
+  const double sample = clip.samples(place->frame, place->column);
+  throw FileError(
+      file, fmt::format("frame {}, column {} is {}; {}", frames.first.value_or(0) + place->frame,
+                        clip.columns[static_cast<std::size_t>(place->column)], sample,
+                        std::isnan(sample) ? "missing samples are not supported by this method"
+                                           : "expected a number of sensible size"));
 }
 
 }  // namespace
 
-Clip select_frames(const Clip& clip, const FrameRange& frames, const fs::path& file) {
+Recording select_frames(const Recording& clip, const FrameRange& frames, const fs::path& file) {
   const Index first = frames.first.value_or(0);
   const Index last = frames.last.value_or(clip.frames());
   if (first >= last || last > clip.frames())
@@ -58,8 +56,8 @@ Clip select_frames(const Clip& clip, const FrameRange& frames, const fs::path& f
   return cut(clip, first, last);
 }
 
-Clip read_input(const fs::path& file, const InputOptions& options) {
-  Clip clip = read_clip(file, {.skeleton = options.skeleton, .rate = options.rate});
+Recording read_input(const fs::path& file, const InputOptions& options) {
+  Recording clip = read_recording(file, {.skeleton = options.skeleton, .rate = options.rate});
   if (!options.frames.first && !options.frames.last) return clip;
   return select_frames(clip, options.frames, file);
 }
@@ -77,8 +75,9 @@ std::vector<fs::path> expand_folders(const std::vector<fs::path>& inputs) {
   return files;
 }
 
-Clip read_solvable(const fs::path& file, const InputOptions& options, const InputNeeds& needs) {
-  Clip clip = read_input(file, options);
+Recording read_solvable(const fs::path& file, const InputOptions& options,
+                        const InputNeeds& needs) {
+  Recording clip = read_input(file, options);
   require_solvable(clip, options.frames, file, needs);
   return clip;
 }

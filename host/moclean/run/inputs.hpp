@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "moclean/motion/clip.hpp"
+#include "moclean/motion/recording.hpp"
 
 namespace moclean {
 
@@ -24,10 +24,11 @@ struct InputOptions {
 
 /// The frames of a clip that were asked for. Throws ArgumentError naming `file` if the clip has
 /// fewer.
-Clip select_frames(const Clip& clip, const FrameRange& frames, const std::filesystem::path& file);
+Recording select_frames(const Recording& clip, const FrameRange& frames,
+                        const std::filesystem::path& file);
 
 /// Reads one recording and selects its frames.
-Clip read_input(const std::filesystem::path& file, const InputOptions& options);
+Recording read_input(const std::filesystem::path& file, const InputOptions& options);
 
 /// Replaces every folder among `inputs` by the recordings in it (of formats that can be read, not
 /// those of sub-folders), sorted by name. Throws FileError for a file that does not exist or a
@@ -42,7 +43,7 @@ struct InputNeeds {
 
 /// As read_input(), and throws FileError naming frame and column of a sample that is too large for
 /// the solvers or missing where it must not be, and for a recording without the frame rate needed.
-Clip read_solvable(const std::filesystem::path& file, const InputOptions& options,
-                   const InputNeeds& needs = {});
+Recording read_solvable(const std::filesystem::path& file, const InputOptions& options,
+                        const InputNeeds& needs = {});
 
 }  // namespace moclean

@@ -82,7 +82,7 @@ std::vector<fs::path> files_in(const fs::path& folder, const OutputRequest& requ
 }
 
 void require_format(const fs::path& file, const std::string& format) {
-  require_writable_clip(file);
+  require_writable_recording(file);
   if (!format.empty() && extension(file) != "." + format)
     throw ArgumentError(fmt::format("--format {} contradicts {}", format, file.string()));
 }
@@ -119,7 +119,7 @@ void require_writable(const fs::path& file) {
   require_writable_folder(folder_of(file), file);
 }
 
-void require_writable_clip(const fs::path& file) {
+void require_writable_recording(const fs::path& file) {
   if (!is_of_format(file, can_write))
     throw ArgumentError(fmt::format("{}: cannot write this format, expected {}", file.string(),
                                     any_extension(can_write)));

@@ -39,7 +39,7 @@ OutputPlan plan_outputs(const OutputRequest& request);
 
 /// Throws ArgumentError unless the file's extension is of a format that can be written, and
 /// FileError unless its folder exists and can be written.
-void require_writable_clip(const std::filesystem::path& file);
+void require_writable_recording(const std::filesystem::path& file);
 
 /// Throws FileError unless the file's folder exists and can be written.
 void require_writable(const std::filesystem::path& file);

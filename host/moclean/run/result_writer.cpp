@@ -90,14 +90,19 @@ void ResultWriter::work() {
 std::vector<AtomicFile> ResultWriter::written(SolvedTake& take) {
   const BusyClock::Work work(clock_);
   std::vector<AtomicFile> files;
-  files.push_back(write_temporary(plan_.clean[take.index], take.clip));
+  Recording outliers = like(take.clean, std::move(take.outliers));
+  files.push_back(write_temporary(plan_.clean[take.index], take.clean));
   if (!plan_.outliers.empty())
-    files.push_back(write_temporary(plan_.outliers[take.index], take.outliers));
-  if (take.mask) files.push_back(write_temporary(plan_.masks[take.index], *take.mask));
-  if (take.sigma) files.push_back(write_temporary(plan_.sigmas[take.index], *take.sigma));
+    files.push_back(write_temporary(plan_.outliers[take.index], outliers));
+  if (take.mask)
+    files.push_back(
+        write_temporary(plan_.masks[take.index], like(take.clean, *std::move(take.mask))));
+  if (take.sigma)
+    files.push_back(
+        write_temporary(plan_.sigmas[take.index], like(take.clean, *std::move(take.sigma))));
   if (take.report) {
-    take.report->take->clean = std::move(take.clip);
-    take.report->take->outliers = std::move(take.outliers);
+    take.report->take->clean = std::move(take.clean);
+    take.report->take->outliers = std::move(outliers);
     AtomicFile& file = files.emplace_back(plan_.reports[take.index]);
     file.write(html(*take.report));
     file.close();

@@ -22,10 +22,10 @@ namespace moclean {
 /// A take that waits to be written.
 struct SolvedTake {
   std::size_t index = 0;  ///< of its file
-  Clip clip;
-  Clip outliers;
-  std::optional<Clip> mask;  ///< of sample_status(), where it is asked for
-  std::optional<Clip> sigma;
+  Recording clean;        ///< the take with its motion in place of its samples
+  Matrix outliers;
+  std::optional<Matrix> mask;    ///< of status_numbers(), where it is asked for
+  std::optional<Matrix> sigma;   ///< where it is asked for
   std::optional<Report> report;  ///< to be written, too; clean and outliers are added to it
   MemoryShare memory;
 };

@@ -5,6 +5,11 @@
 
 namespace moclean {
 
+std::uint64_t bytes_of(const Recording& take, std::uint64_t copies) {
+  return sizeof(double) * (copies * static_cast<std::uint64_t>(take.samples.size()) +
+                           static_cast<std::uint64_t>(take.channels.size()));
+}
+
 std::uint64_t TakeBatch::bytes() const {
   return std::transform_reduce(takes.begin(), takes.end(), std::uint64_t{0}, std::plus{},
                                [](const TakeInHand& take) { return take.memory.bytes(); });

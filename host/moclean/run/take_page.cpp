@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include "moclean/core/version.hpp"
-#include "moclean/formats/read_skeleton.hpp"
 #include "moclean/linalg/precision.hpp"
 
 namespace moclean {
@@ -36,17 +35,10 @@ std::string lambda_text(const RobustPca& method) {
 
 }  // namespace
 
-std::vector<int> parents_of(const Job& job, std::size_t take, const Clip& noisy) {
-  const ReadOptions reading{.skeleton = job.reading.skeleton, .rate = 0};
-  std::vector<std::filesystem::path> files = {job.files[take]};
-  if (!job.truths.empty()) files.push_back(job.truths[take]);
-  for (const std::filesystem::path& file : files) {
-    const std::optional<Skeleton> skeleton = read_skeleton(file, reading);
-    if (!skeleton) continue;
-    std::vector<int> parents = joint_parents(*skeleton, noisy);
-    if (!parents.empty()) return parents;
-  }
-  return {};
+std::vector<int> parents_of(const Recording& noisy, const Recording* truth) {
+  std::vector<int> parents = joint_parents(noisy);
+  if (parents.empty() && truth && truth->skeleton) return joint_parents(*truth->skeleton, noisy);
+  return parents;
 }
 
 Report take_page(const Job& job, const Backend& backend, const TakeReport& take, ReportTake parts) {

@@ -8,9 +8,9 @@
 
 namespace moclean {
 
-/// The skeleton that a page draws for a take: the input's, else that of InputOptions::skeleton,
-/// else that of its truth. Empty if none of them fits the joints of `noisy`.
-std::vector<int> parents_of(const Job& job, std::size_t take, const Clip& noisy);
+/// The skeleton that a page draws for a take: its own, else that of its truth, if there is one.
+/// Empty if neither fits the joints of `noisy`.
+std::vector<int> parents_of(const Recording& noisy, const Recording* truth);
 
 /// The page of one take: `parts` and what the run says about it.
 Report take_page(const Job& job, const Backend& backend, const TakeReport& take, ReportTake parts);

@@ -23,7 +23,7 @@ std::vector<std::uintmax_t> sizes_of(const std::vector<fs::path>& files) {
   return sizes;
 }
 
-Index segments_of(const Segmentation& segmentation, const Clip& clip) {
+Index segments_of(const Segmentation& segmentation, const Recording& clip) {
   return static_cast<Index>(plan(segmentation, clip.frames()).size()) - 1;
 }
 
@@ -71,9 +71,9 @@ TakeReader::Take TakeReader::read(std::size_t index, MemoryShare memory) {
   require_room(index, file_bytes_[index]);
   Take take;
   take.clip = read_solvable(job_.files[index], job_.reading, rules_.needs);
-  const auto samples = static_cast<std::uint64_t>(take.clip.samples.size()) * sizeof(double);
-  require_room(index, rules_.copies_solving * samples);
-  memory.resize(rules_.copies_solving * samples);
+  const std::uint64_t bytes = bytes_of(take.clip, rules_.copies_solving);
+  require_room(index, bytes);
+  memory.resize(bytes);
   take.memory = std::move(memory);
   take.seconds = work.seconds();
   log_.send(TakeRead{index});

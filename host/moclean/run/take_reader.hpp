@@ -43,7 +43,7 @@ class TakeReader {
 
  private:
   struct Take {
-    Clip clip;
+    Recording clip;
     double seconds = 0;
     MemoryShare memory;
   };

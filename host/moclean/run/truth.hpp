@@ -15,6 +15,7 @@ std::vector<std::filesystem::path> truths_of(const std::filesystem::path& truth,
                                              const std::vector<std::filesystem::path>& files);
 
 /// Reads a truth. Throws FileError if it is not of the shape of `noisy`.
-Clip read_truth(const std::filesystem::path& file, const InputOptions& options, const Clip& noisy);
+Recording read_truth(const std::filesystem::path& file, const InputOptions& options,
+                     const Recording& noisy);
 
 }  // namespace moclean

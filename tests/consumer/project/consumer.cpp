@@ -13,14 +13,15 @@
 
 namespace {
 
-moclean::Clip take() {
-  moclean::Clip clip{moclean::Matrix::Constant(20, 6, 3), moclean::default_column_names(6), 0, {}};
+moclean::Recording take() {
+  moclean::Recording clip{
+      moclean::Matrix::Constant(20, 6, 3), moclean::default_column_names(6), 0, {}};
   clip.samples(7, 2) += 50;
   return clip;
 }
 
 bool is_clean(const std::filesystem::path& file) {
-  return std::abs(moclean::read_clip(file).samples(7, 2) - 3) < 1e-4;
+  return std::abs(moclean::read_recording(file).samples(7, 2) - 3) < 1e-4;
 }
 
 }  // namespace
@@ -28,7 +29,7 @@ bool is_clean(const std::filesystem::path& file) {
 int main(int, char** arguments) {
   const std::filesystem::path folder = arguments[1];
   std::filesystem::create_directories(folder);
-  for (const char* name : {"1.csv", "3.csv"}) moclean::write_clip(folder / name, take());
+  for (const char* name : {"1.csv", "3.csv"}) moclean::write_recording(folder / name, take());
   std::ofstream(folder / "2.csv") << "a,b\n1,x\n";
 
   moclean::Job job{.files = moclean::expand_folders({folder}),
