@@ -14,6 +14,7 @@
 #include "moclean/core/error.hpp"
 #include "moclean/core/parallel.hpp"
 #include "moclean/denoise/body_findings.hpp"
+#include "moclean/denoise/low_rank.hpp"
 #include "moclean/denoise/moving_part.hpp"
 #include "moclean/denoise/sample_status.hpp"
 #include "moclean/denoise/smooth_in_time.hpp"
