@@ -8,12 +8,12 @@ namespace moclean {
 
 /// Where the results of a run go.
 struct OutputPlan {
-  std::vector<std::filesystem::path> clean;     ///< one per input
-  std::vector<std::filesystem::path> outliers;  ///< one per input; empty if not asked for
-  std::vector<std::filesystem::path> masks;     ///< as `outliers`
-  std::vector<std::filesystem::path> sigmas;    ///< as `outliers`
-  std::vector<std::filesystem::path> reports;   ///< one per input; empty if not asked for
-  std::vector<std::filesystem::path> folders;   ///< to be created before anything is written
+  std::vector<std::filesystem::path> clean = {};     ///< one per input
+  std::vector<std::filesystem::path> outliers = {};  ///< one per input; empty if not asked for
+  std::vector<std::filesystem::path> masks = {};     ///< as `outliers`
+  std::vector<std::filesystem::path> sigmas = {};    ///< as `outliers`
+  std::vector<std::filesystem::path> reports = {};   ///< one per input; empty if not asked for
+  std::vector<std::filesystem::path> folders = {};   ///< to be created before anything is written
 };
 
 /// What the user said about the results.
