@@ -18,12 +18,12 @@ namespace {
 struct ConvertOptions {
   std::filesystem::path input;
   std::filesystem::path output;
-  InputOptions reading;
+  ReadOptions reading;
 };
 
 ExitCode run(const ConvertOptions& options) {
   require_writable_recording(options.output);
-  const Recording clip = read_input(options.input, options.reading);
+  const Recording clip = read_recording(options.input, options.reading);
   write_recording(options.output, clip);
   fmt::print("{} -> {}: {} frames x {} columns\n", options.input.string(), options.output.string(),
              clip.frames(), clip.samples.cols());

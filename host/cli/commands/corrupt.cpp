@@ -25,7 +25,7 @@ struct CorruptOptions {
   std::filesystem::path mask;  // empty: not asked for
   std::string noise;
   std::uint64_t seed = 0;
-  InputOptions reading;
+  ReadOptions reading;
 };
 
 // 1 where the noise touched an entry, else 0.
@@ -37,7 +37,7 @@ ExitCode run(const CorruptOptions& options) {
   if (!options.mask.empty()) require_writable_recording(options.mask);
   if (options.mask == options.output)
     throw ArgumentError(fmt::format("-o and --mask would both write {}", options.output.string()));
-  const Recording clean = read_input(options.input, options.reading);
+  const Recording clean = read_recording(options.input, options.reading);
   const Corrupted noisy = corrupt(clean, noise, options.seed);
   AtomicFile clip = write_temporary(options.output, noisy.clip);
   if (!options.mask.empty()) write_recording(options.mask, mask_of(noisy));

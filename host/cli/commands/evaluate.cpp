@@ -25,7 +25,7 @@ struct EvaluateOptions {
   std::filesystem::path mask;      // empty: not given
   std::filesystem::path outliers;  // empty: not given
   double threshold = 0;
-  InputOptions reading;
+  ReadOptions reading;
   bool json = false;
 };
 
@@ -116,11 +116,11 @@ std::vector<Value> measured(const Evaluation& evaluation) {
 }
 
 ExitCode run(const EvaluateOptions& options) {
-  InputOptions whole = options.reading;
+  ReadOptions whole = options.reading;
   whole.frames = {};
-  const Recording all = read_input(options.truth, whole);
+  const Recording all = read_recording(options.truth, whole);
   const auto read = [&](const std::filesystem::path& file) {
-    return select(read_input(file, whole), all.frames(), options.reading.frames, file);
+    return select(read_recording(file, whole), all.frames(), options.reading.frames, file);
   };
   const Recording truth = select(all, all.frames(), options.reading.frames, options.truth);
   const Recording estimate = read(options.estimate);

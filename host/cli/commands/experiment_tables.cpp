@@ -28,9 +28,10 @@ struct Takes {
 Takes read_takes(const TableOptions& options) {
   Takes result;
   for (const fs::path& file : expand_folders(options.inputs)) {
-    const InputOptions reading{
-        .frames = options.frames, .rate = options.rate, .skeleton = options.skeleton};
-    Recording truth = read_solvable(file, reading);
+    const ReadOptions reading{
+        .skeleton = options.skeleton, .rate = options.rate, .frames = options.frames};
+    Recording truth = read_recording(file, reading);
+    require_solvable(truth, file, reading.frames);
     ExperimentTake take{.name = file.stem().string(),
                         .label = file.filename().string(),
                         .file = file,

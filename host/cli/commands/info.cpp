@@ -16,7 +16,7 @@ namespace {
 
 struct InfoOptions {
   std::filesystem::path file;
-  InputOptions reading;
+  ReadOptions reading;
   bool json = false;
 };
 
@@ -62,7 +62,7 @@ void print_info(const std::filesystem::path& file, const Recording& clip) {
 }
 
 ExitCode run(const InfoOptions& options) {
-  const Recording clip = read_input(options.file, options.reading);
+  const Recording clip = read_recording(options.file, options.reading);
   if (options.json)
     fmt::print("{}", to_text(info_record(options.file, clip)));
   else

@@ -19,7 +19,7 @@ namespace moclean::cli {
 /// The command line of `moclean denoise`.
 struct DenoiseOptions : BackendOptions {
   std::vector<std::filesystem::path> inputs;  ///< files and folders
-  InputOptions reading;
+  ReadOptions reading;
   std::filesystem::path output;
   std::filesystem::path outliers;  ///< empty: not asked for
   std::filesystem::path mask;      ///< status of every sample; empty: not asked for

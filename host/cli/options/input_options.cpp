@@ -57,7 +57,7 @@ void add_file_options(CLI::App& command, double& rate, std::filesystem::path& sk
       ->type_name("FILE.asf");
 }
 
-void add_input_options(CLI::App& command, InputOptions& options) {
+void add_input_options(CLI::App& command, ReadOptions& options) {
   add_frames_option(command, options.frames,
                     "Use frames A up to B - 1 only, counted from 0; A or B may be left out");
   add_file_options(command, options.rate, options.skeleton);

@@ -25,6 +25,6 @@ void add_frames_option(CLI::App& command, FrameRange& frames, const std::string&
 void add_file_options(CLI::App& command, double& rate, std::filesystem::path& skeleton);
 
 /// --frames, --rate and --skeleton.
-void add_input_options(CLI::App& command, InputOptions& options);
+void add_input_options(CLI::App& command, ReadOptions& options);
 
 }  // namespace moclean::cli

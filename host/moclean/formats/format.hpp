@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string_view>
 
 #include "moclean/formats/file.hpp"
@@ -8,12 +9,19 @@
 
 namespace moclean {
 
-/// What a reader cannot find in the file itself.
+/// Frames A up to but not including B, counted from 0; either end may be left open.
+struct FrameRange {
+  std::optional<Index> first;
+  std::optional<Index> last;
+};
+
+/// How a recording is read: what its file does not say, and which part of it is wanted.
 struct ReadOptions {
   /// .asf: that of an .amc, else looked for in the .amc's folder; of other files without a skeleton
   /// of their own, if they have its joints.
   std::filesystem::path skeleton;
-  double rate = 0;  ///< Hz for files that state none; 0: leave unknown
+  double rate = 0;         ///< Hz for files that state none; 0: leave unknown
+  FrameRange frames = {};  ///< formats read all; see read_recording()
 };
 
 /// What files of a format say beside the positions.

@@ -145,7 +145,7 @@ class Run {
 
   void read_truths(TakeBatch& batch) {
     if (job_.truths.empty()) return;
-    InputOptions reading = job_.reading;
+    ReadOptions reading = job_.reading;
     if (job_.truth_frames) reading.frames = *job_.truth_frames;
     keep_if(batch, 1, [&](const Recording& clip, TakeInHand& take) {
       take.truth = read_truth(job_.truths[take.index], reading, clip);

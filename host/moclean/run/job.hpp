@@ -24,7 +24,7 @@ enum class FailurePolicy {
 /// What a run works on: all but the backend, as plain values.
 struct Job {
   std::vector<std::filesystem::path> files = {};  ///< one per take
-  InputOptions reading = {};
+  ReadOptions reading = {};
   OutputPlan outputs = {};                         ///< see plan_outputs()
   std::vector<std::filesystem::path> truths = {};  ///< one per file, see truths_of(); empty: none
   std::optional<FrameRange> truth_frames = {};     ///< default: those of the takes

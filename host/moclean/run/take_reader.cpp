@@ -70,7 +70,8 @@ TakeReader::Take TakeReader::read(std::size_t index, MemoryShare memory) {
   const BusyClock::Work work(clock_);
   require_room(index, file_bytes_[index]);
   Take take;
-  take.clip = read_solvable(job_.files[index], job_.reading, rules_.needs);
+  take.clip = read_recording(job_.files[index], job_.reading);
+  require_solvable(take.clip, job_.files[index], job_.reading.frames, rules_.needs);
   const std::uint64_t bytes = bytes_of(take.clip, rules_.copies_solving);
   require_room(index, bytes);
   memory.resize(bytes);

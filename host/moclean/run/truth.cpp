@@ -35,8 +35,8 @@ std::vector<fs::path> truths_of(const fs::path& truth, const std::vector<fs::pat
   return truths;
 }
 
-Recording read_truth(const fs::path& file, const InputOptions& options, const Recording& noisy) {
-  Recording truth = read_input(file, options);
+Recording read_truth(const fs::path& file, const ReadOptions& options, const Recording& noisy) {
+  Recording truth = read_recording(file, options);
   if (truth.samples.rows() == noisy.samples.rows() && truth.samples.cols() == noisy.samples.cols())
     return truth;
   throw FileError(file, fmt::format("the truth has {} frames x {} columns, its input {} x {}; see "

@@ -15,7 +15,7 @@ std::vector<std::filesystem::path> truths_of(const std::filesystem::path& truth,
                                              const std::vector<std::filesystem::path>& files);
 
 /// Reads a truth. Throws FileError if it is not of the shape of `noisy`.
-Recording read_truth(const std::filesystem::path& file, const InputOptions& options,
+Recording read_truth(const std::filesystem::path& file, const ReadOptions& options,
                      const Recording& noisy);
 
 }  // namespace moclean
