@@ -11,13 +11,13 @@
 
 #include <benchmark/benchmark.h>
 
-#include "moclean/io/amc.hpp"
-#include "moclean/io/bvh.hpp"
-#include "moclean/io/csv.hpp"
-#include "moclean/io/file.hpp"
-#include "moclean/io/find_skeleton.hpp"
-#include "moclean/io/npy.hpp"
-#include "moclean/io/read_write.hpp"
+#include "moclean/formats/amc.hpp"
+#include "moclean/formats/bvh.hpp"
+#include "moclean/formats/csv.hpp"
+#include "moclean/formats/file.hpp"
+#include "moclean/formats/find_skeleton.hpp"
+#include "moclean/formats/npy.hpp"
+#include "moclean/formats/read_write.hpp"
 
 namespace moclean::bench {
 namespace {
@@ -44,7 +44,7 @@ struct Take {
   std::string text;
   std::function<SkeletonMotion(std::string_view)> parser;
   SkeletonMotion motion;
-  Clip clip;
+  Recording clip;
 
   SkeletonMotion parse() const { return parser(text); }
 };
@@ -65,10 +65,10 @@ Take open(const fs::path& file) {
 
 // The clip as a file of that extension, gone at the end.
 struct Written {
-  Written(const Clip& clip, const std::string& extension)
+  Written(const Recording& clip, const std::string& extension)
       : file(fs::temp_directory_path() /
              ("moclean-io-bench-" + std::to_string(std::random_device()()) + extension)) {
-    write_clip(file, clip);
+    write_recording(file, clip);
   }
   ~Written() { fs::remove(file); }
   fs::path file;
@@ -96,20 +96,20 @@ void kinematics(benchmark::State& state, const fs::path& file) {
 
 // The file in the page cache, parsing and kinematics.
 void read(benchmark::State& state, const fs::path& file) {
-  for (auto iteration : state) benchmark::DoNotOptimize(read_clip(file));
+  for (auto iteration : state) benchmark::DoNotOptimize(read_recording(file));
   count(state, fs::file_size(file));
 }
 
 void read_written(benchmark::State& state, const fs::path& file, const std::string& extension) {
-  const Written written(read_clip(file), extension);
-  for (auto iteration : state) benchmark::DoNotOptimize(read_clip(written.file));
+  const Written written(read_recording(file), extension);
+  for (auto iteration : state) benchmark::DoNotOptimize(read_recording(written.file));
   count(state, fs::file_size(written.file));
 }
 
 void write(benchmark::State& state, const fs::path& file, const std::string& extension) {
-  const Clip clip = read_clip(file);
+  const Recording clip = read_recording(file);
   const Written written(clip, extension);
-  for (auto iteration : state) write_clip(written.file, clip);
+  for (auto iteration : state) write_recording(written.file, clip);
   count(state, fs::file_size(written.file));
 }
 

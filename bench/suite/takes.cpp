@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
-#include "moclean/io/read_write.hpp"
+#include "moclean/formats/read_write.hpp"
 #include "moclean/noise/noise.hpp"
 #include "moclean/segment/plan.hpp"
 
@@ -21,7 +21,7 @@ std::vector<NoisyTake> noisy_takes(const std::filesystem::path& data) {
                            debian_takes / "01_03.bvh", debian_takes / "Boxing_Toes.bvh"}) {
     if (!std::filesystem::exists(file)) continue;
     const GaussianFrames noise{.fraction = noisy_share, .mean = 1, .sd = 1.2};
-    takes.push_back({file.stem(), corrupt(read_clip(file), noise, 1).clip.samples});
+    takes.push_back({file.stem(), corrupt(read_recording(file), noise, 1).clip.samples});
   }
   if (takes.empty())
     throw FileError(debian_takes, "no takes here (Debian package assimp-testmodels)");

@@ -7,8 +7,9 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/core/version.hpp"
 
-#include "cli/commands.hpp"
+#include "cli/commands/commands.hpp"
 
 namespace moclean::cli {
 namespace {
@@ -28,7 +29,7 @@ std::string help_command(const CLI::App& program) {
 
 ExitCode run_program(int count, char** arguments) {
   CLI::App program("Cleans human motion-capture recordings on OpenCL devices.", "moclean");
-  program.set_version_flag("--version", "moclean " MOCLEAN_VERSION);
+  program.set_version_flag("--version", fmt::format("moclean {}", version()));
   program.require_subcommand(1);
   program.footer(
       "Exit codes: 0 done, 1 failed input or device, 2 usage, 3 a segment did not converge,\n"

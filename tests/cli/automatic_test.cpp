@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 
 #include "moclean/core/random.hpp"
-#include "moclean/io/read_write.hpp"
+#include "moclean/formats/read_write.hpp"
 
 #include "cli/program.hpp"
 #include "support/matrix.hpp"
@@ -37,7 +37,7 @@ class Auto : public ::testing::Test {
   nlohmann::json record() const { return nlohmann::json::parse(content(folder_ / "run.json")); }
 
   TemporaryFolder folder_;
-  Clip walk_ = synthetic_walk(150);
+  Recording walk_ = synthetic_walk(150);
   std::string csv_;
   std::string output_ = folder_ / "clean.npy";
 };
@@ -50,9 +50,9 @@ TEST_F(Auto, IsTheDefaultAndAgreesWithTheReference) {
             "auto:window=2000,overlap=100,body=on,reject=auto,smooth=on");
   EXPECT_EQ(record()["method"]["reject"], "auto");
   EXPECT_EQ(record()["method"]["smooth"], "on");
-  const Matrix clean = read_clip(output_).samples;
+  const Matrix clean = read_recording(output_).samples;
   EXPECT_TRUE(clean.allFinite());
-  const Matrix mask = read_clip(folder_ / "mask.npy").samples;
+  const Matrix mask = read_recording(folder_ / "mask.npy").samples;
   EXPECT_TRUE((mask.block(60, 3, 20, 3).array() == 2).all());
 }
 
@@ -78,7 +78,7 @@ TEST_F(Auto, ClaimsNeitherRankNorConvergence) {
 
 TEST_F(Auto, RefusesAMatrixThatIsNoMotion) {
   Random random(6);
-  Clip matrix = walk_;
+  Recording matrix = walk_;
   for (double& x : matrix.samples.reshaped()) x = random.normal();
   const std::string file = folder_.write("matrix.csv", matrix);
 
@@ -94,7 +94,7 @@ TEST_F(Auto, SaysWhatWasChangedAndAloudWhenItIsMuch) {
   EXPECT_THAT(denoise({}).err, IsEmpty());
   EXPECT_NEAR(record()["inputs"][0]["changed"]["filled"].get<double>(), 60. / (150 * 93), 1e-12);
 
-  Clip spoilt = walk_;
+  Recording spoilt = walk_;
   spoilt.samples.block(100, 30, 4, 3).array() += 15;
   folder_.write("walk.csv", spoilt);
   for (const std::vector<std::string>& options : {std::vector<std::string>{}, {"--quiet"}}) {
@@ -113,7 +113,7 @@ TEST_F(Auto, SaysWhatWasChangedAndAloudWhenItIsMuch) {
 }
 
 TEST_F(Auto, OptionsOfRejectionAndSmoothingReachIt) {
-  Clip spoilt = walk_;
+  Recording spoilt = walk_;
   Random random(2);
   for (double& x : spoilt.samples.reshaped()) x += 0.05 * random.normal();
   spoilt.samples.block(100, 30, 4, 3).array() += 15;
@@ -125,17 +125,17 @@ TEST_F(Auto, OptionsOfRejectionAndSmoothingReachIt) {
 
   ASSERT_EQ(denoise({"--method", "auto:smooth=off"}).exit_code, 0);
   EXPECT_EQ(record()["method"]["smooth"], "off");
-  const Matrix clean = read_clip(output_).samples, noisy = read_clip(csv_).samples;
+  const Matrix clean = read_recording(output_).samples, noisy = read_recording(csv_).samples;
   EXPECT_TRUE(clean.row(20) == noisy.row(20));
   EXPECT_GT((clean.row(101) - noisy.row(101)).norm(), 20);
   ASSERT_EQ(denoise({"--keep-observed"}).exit_code, 0);
-  EXPECT_TRUE(same_bits(read_clip(output_).samples, clean));
+  EXPECT_TRUE(same_bits(read_recording(output_).samples, clean));
 }
 
 TEST_F(Auto, WritesItsStandardDeviation) {
   ASSERT_EQ(denoise({"--sigma", folder_ / "sigma.csv"}).exit_code, 0);
 
-  const Matrix sigma = read_clip(folder_ / "sigma.csv").samples;
+  const Matrix sigma = read_recording(folder_ / "sigma.csv").samples;
   EXPECT_TRUE((sigma.array() > 0).all());
   EXPECT_GT(sigma(70, 3), 10 * sigma(30, 3));
 }
@@ -143,7 +143,7 @@ TEST_F(Auto, WritesItsStandardDeviation) {
 TEST_F(Auto, RunsWithinAChain) {
   ASSERT_EQ(denoise({"--method", "hampel+auto:window=80+butterworth:cutoff=10"}).exit_code, 0);
 
-  EXPECT_TRUE(read_clip(output_).samples.allFinite());
+  EXPECT_TRUE(read_recording(output_).samples.allFinite());
   EXPECT_EQ(denoise({"--method", "auto:window=3"}).exit_code, 2);
 }
 

@@ -2,7 +2,8 @@
 
 #include <gmock/gmock.h>
 
-#include "moclean/io/read_write.hpp"
+#include "moclean/formats/formats.hpp"
+#include "moclean/formats/read_write.hpp"
 #include "moclean/metric/metric.hpp"
 
 #include "cli/program.hpp"
@@ -28,6 +29,21 @@ TEST(Commands, HelpOfEveryCommandEndsWithAnExample) {
     ASSERT_NE(example, std::string::npos) << command;
     EXPECT_THAT(help.out.substr(example), HasSubstr("moclean " + command));
   }
+}
+
+TEST(Commands, HelpNamesEveryFormat) {
+  const std::string read = "(" + listed_extensions(can_read) + ")";
+  const std::string written = "(" + listed_extensions(can_write) + ")";
+  for (const std::string command : {"denoise", "corrupt", "convert", "info"})
+    EXPECT_THAT(run({command, "--help"}).out, HasSubstr(read)) << command;
+  for (const std::string command : {"denoise", "corrupt", "convert"})
+    EXPECT_THAT(run({command, "--help"}).out, HasSubstr(written)) << command;
+  EXPECT_THAT(run({"experiment", "table2", "--help"}).out, HasSubstr(read));
+  EXPECT_THAT(run({"evaluate", "--help"}).out, HasSubstr(any_extension(has_skeleton)));
+
+  const std::string formats_help = run({"convert", "--help"}).out;
+  for (const Format* format : formats())
+    EXPECT_THAT(formats_help, HasSubstr("\n  " + std::string(format->extension) + " "));
 }
 
 TEST(Commands, PrintsItsVersion) {
@@ -76,19 +92,19 @@ TEST(Corrupt, SameSeedGivesTheSameFile) {
 
 TEST(Corrupt, SaysHowManyEntriesChanged) {
   const TemporaryFolder folder;
-  const Clip clean = synthetic_walk(60);
+  const Recording clean = synthetic_walk(60);
   const std::string walk = folder.write("walk.npy", clean);
 
   const Outcome outcome = run({"corrupt", walk, "-o", folder / "noisy.npy", "--noise",
                                "gaussian-frames:frames=20", "--seed", "1"});
 
-  const Comparison comparison = compare(clean, read_clip(folder / "noisy.npy"));
+  const Comparison comparison = compare(clean, read_recording(folder / "noisy.npy"));
   EXPECT_THAT(outcome.out, HasSubstr(std::to_string(comparison.changed) + " of 5580 entries"));
 }
 
 TEST(Corrupt, WritesTheMaskOfWhatItTouched) {
   const TemporaryFolder folder;
-  const Clip clean = synthetic_walk(60);
+  const Recording clean = synthetic_walk(60);
   const std::string walk = folder.write("walk.npy", clean);
 
   const Outcome outcome =
@@ -96,7 +112,8 @@ TEST(Corrupt, WritesTheMaskOfWhatItTouched) {
            "gap:count=2,length=9", "--seed", "3"});
 
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  const Clip mask = read_clip(folder / "mask.csv"), noisy = read_clip(folder / "noisy.npy");
+  const Recording mask = read_recording(folder / "mask.csv"),
+                  noisy = read_recording(folder / "noisy.npy");
   EXPECT_EQ(mask.columns, clean.columns);
   EXPECT_TRUE(((mask.samples.array() == 1) == noisy.samples.array().isNaN()).all());
   EXPECT_TRUE((mask.samples.array() == 0 || mask.samples.array() == 1).all());
@@ -131,7 +148,7 @@ TEST(Corrupt, WrongNoiseIsAUsageError) {
 
 TEST(Convert, CsvToNpyAndBackKeepsEverySample) {
   const TemporaryFolder folder;
-  Clip clip = synthetic_walk(20);
+  Recording clip = synthetic_walk(20);
   clip.samples(3, 4) = std::nan("");
   const std::string walk = folder.write("walk.csv", clip);
 
@@ -139,7 +156,7 @@ TEST(Convert, CsvToNpyAndBackKeepsEverySample) {
   ASSERT_EQ(run({"convert", folder / "walk.npy", folder / "back.csv", "--rate", "120"}).exit_code,
             0);
 
-  const Clip back = read_clip(folder / "back.csv");
+  const Recording back = read_recording(folder / "back.csv");
   EXPECT_EQ(back.frame_rate, 120);
   EXPECT_EQ(back.samples.array().isNaN().count(), 1);
   EXPECT_TRUE(std::isnan(back.samples(3, 4)));
@@ -157,8 +174,8 @@ TEST(Convert, TurnsASkeletonIntoJointPositions) {
   const Outcome outcome = run({"convert", take.string(), folder / "take.npy", "--frames", "10:30"});
 
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  const Clip expected = cut(read_clip(take), 10, 30);
-  EXPECT_TRUE(same_bits(read_clip(folder / "take.npy").samples, expected.samples));
+  const Recording expected = cut(read_recording(take), 10, 30);
+  EXPECT_TRUE(same_bits(read_recording(folder / "take.npy").samples, expected.samples));
 }
 
 TEST(Convert, ReportsAMalformedFileWithItsLine) {
@@ -184,7 +201,7 @@ TEST(Convert, CannotWriteSkeletonFiles) {
 
 TEST(Info, StatesWhatTheFileHolds) {
   const TemporaryFolder folder;
-  Clip clip = synthetic_walk(60);
+  Recording clip = synthetic_walk(60);
   clip.samples(1, 2) = std::nan("");
   const std::string walk = folder.write("walk.csv", clip);
 

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "moclean/io/read_write.hpp"
+#include "moclean/formats/read_write.hpp"
 
 #include "cli/program.hpp"
 #include "support/matrix.hpp"
@@ -16,8 +16,8 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-Clip narrow_walk(Index frames) {
-  Clip walk = synthetic_walk(frames, 9);
+Recording narrow_walk(Index frames) {
+  Recording walk = synthetic_walk(frames, 9);
   walk.samples.conservativeResize(frames, 12);
   walk.columns.resize(12);
   return walk;
@@ -91,7 +91,7 @@ TEST(DenoiseFiles, ResultDoesNotDependOnJobs) {
 
 TEST(DenoiseFiles, FramesGiveTheResultOfTheCutRecording) {
   const TemporaryFolder folder;
-  const Clip walk = synthetic_walk(120);
+  const Recording walk = synthetic_walk(120);
   const std::string whole = folder.write("walk.npy", walk);
   const std::string part = folder.write("part.npy", cut(walk, 30, 120));
 
@@ -117,7 +117,7 @@ TEST(DenoiseFiles, RateAndNamesReachTheResult) {
 
   ASSERT_EQ(run({"denoise", walk, "-o", folder / "clean.csv"}).exit_code, 0);
 
-  const Clip clean = read_clip(folder / "clean.csv");
+  const Recording clean = read_recording(folder / "clean.csv");
   EXPECT_EQ(clean.columns, narrow_walk(20).columns);
   EXPECT_EQ(clean.frame_rate, 120);
 }
@@ -184,7 +184,7 @@ TEST(DenoiseFiles, OneMalformedInputStopsAllBeforeAnythingIsWritten) {
 TEST(DenoiseFiles, MissingSampleIsNamedByFileFrameAndColumn) {
   const TemporaryFolder folder;
   const std::string good = folder.write("a.csv", narrow_walk(20));
-  Clip gap = narrow_walk(20);
+  Recording gap = narrow_walk(20);
   gap.samples(7, 4) = std::nan("");
   const std::string bad = folder.write("b.csv", gap);
 

@@ -1,10 +1,15 @@
 // moclean denoise --report and --truth.
 
+#include <fstream>
+#include <thread>
+
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include "moclean/report/report.hpp"
 
 #include "cli/program.hpp"
+#include "formats/tiny_files.hpp"
 #include "support/synthetic_walk.hpp"
 #include "support/tolerance.hpp"
 
@@ -19,7 +24,7 @@ using ::testing::HasSubstr;
 class DenoiseReport : public ::testing::Test {
  protected:
   DenoiseReport() {
-    Clip walk = synthetic_walk(90);
+    Recording walk = synthetic_walk(90);
     truth_ = folder_.write("truth/walk.csv", walk);
     walk.samples.block(10, 6, 5, 3).array() += 3;
     noisy_ = folder_.write("walk.csv", walk);
@@ -62,6 +67,20 @@ TEST_F(DenoiseReport, TruthIsCutLikeTheInputOrAsItSays) {
   EXPECT_EQ(uncut.exit_code, 1);
   EXPECT_THAT(uncut.err, AllOf(HasSubstr("longer.csv"), HasSubstr("--truth-frames")));
   EXPECT_EQ(run(denoise({"--truth", longer, "--truth-frames", "0:90"})).exit_code, 0);
+}
+
+// From a pipe, which can be read only once: a second reader would wait for ever.
+TEST_F(DenoiseReport, NeedsEveryFileOnce) {
+  if (!report_available()) GTEST_SKIP() << "built without libjs-three and libjs-dygraphs";
+  const std::string pipe = folder_ / "pipe.bvh", page = folder_ / "report.html";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  const std::jthread writer([&] { std::ofstream(pipe) << tiny_bvh; });
+
+  const Outcome outcome =
+      run({"denoise", pipe, "-o", folder_ / "clean.npy", "--method", "median", "--report", page});
+
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_THAT(content(page), HasSubstr("\"parents\":[-1,0,1]"));
 }
 
 TEST_F(DenoiseReport, IsOnePageForOneTake) {

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "moclean/io/read_write.hpp"
+#include "moclean/formats/read_write.hpp"
 
 #include "cli/program.hpp"
 #include "support/data.hpp"
@@ -19,8 +19,8 @@ using ::testing::IsEmpty;
 using ::testing::UnorderedElementsAre;
 
 // A walk with a jump in one joint, so that there is something to take away.
-Clip disturbed_walk(Index frames) {
-  Clip walk = synthetic_walk(frames);
+Recording disturbed_walk(Index frames) {
+  Recording walk = synthetic_walk(frames);
   walk.samples.block(10, 6, 5, 3).array() += 3;
   return walk;
 }
@@ -50,8 +50,8 @@ TEST_F(Denoise, MotionAndOutliersAddUpToTheInput) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, HasSubstr("120 frames x 93 columns, segments 2"));
   EXPECT_THAT(outcome.err, HasSubstr("changed much"));  // a walk of which a fifth is disturbed
-  const Matrix motion = read_clip(output_).samples;
-  const Matrix outliers = read_clip(folder_ / "outliers.npy").samples;
+  const Matrix motion = read_recording(output_).samples;
+  const Matrix outliers = read_recording(folder_ / "outliers.npy").samples;
   const double default_tolerance = 1e-7;
   EXPECT_LE(relative_difference(motion + outliers, disturbed_walk(120).samples), default_tolerance);
   EXPECT_GT(outliers.norm(), 0);
@@ -165,7 +165,7 @@ TEST_F(Denoise, EveryBackendAndProductPathGivesTheSameMotion) {
     const Outcome outcome = denoise(way);
     ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
     EXPECT_THAT(outcome.out, IsEmpty());
-    motions.push_back(read_clip(output_).samples);
+    motions.push_back(read_recording(output_).samples);
   }
 
   EXPECT_LE(relative_difference(motions[1], motions[0]), tolerance::backends_low_rank());
@@ -195,7 +195,7 @@ TEST_F(Denoise, UnconvergedRunWritesItsResultAndExits3) {
   EXPECT_EQ(outcome.exit_code, 3);
   EXPECT_THAT(outcome.err, HasSubstr("1 of 1 segments did not converge"));
   EXPECT_EQ(outcome.json()["inputs"][0]["segments"][0]["converged"], false);
-  EXPECT_EQ(read_clip(output_).frames(), 120);
+  EXPECT_EQ(read_recording(output_).frames(), 120);
 }
 
 TEST_F(Denoise, VerifyAddsTheAgreementToTheRecord) {

@@ -17,10 +17,10 @@ using ::testing::HasSubstr;
 class Evaluate : public ::testing::Test {
  protected:
   Evaluate() {
-    Clip clip{.samples = Matrix::Zero(2, 6),
-              .columns = {"Hip.x", "Hip.y", "Hip.z", "Head.x", "Head.y", "Head.z"},
-              .frame_rate = 0,
-              .unit = ""};
+    Recording clip{.samples = Matrix::Zero(2, 6),
+                   .columns = {"Hip.x", "Hip.y", "Hip.z", "Head.x", "Head.y", "Head.z"},
+                   .frame_rate = 0,
+                   .unit = ""};
     truth_ = folder_.write("truth.csv", clip);
     clip.samples(0, 0) = 3;
     clip.samples(1, 4) = 4;
@@ -63,9 +63,9 @@ TEST_F(Evaluate, TableNamesEveryJoint) {
 }
 
 TEST_F(Evaluate, MaskAndOutliersGiveTheFiguresOfDetection) {
-  Clip mask{.samples = Matrix::Zero(2, 6), .columns = {}, .frame_rate = 0, .unit = ""};
+  Recording mask{.samples = Matrix::Zero(2, 6), .columns = {}, .frame_rate = 0, .unit = ""};
   mask.columns = {"Hip.x", "Hip.y", "Hip.z", "Head.x", "Head.y", "Head.z"};
-  Clip outliers = mask;
+  Recording outliers = mask;
   mask.samples(0, 0) = mask.samples(1, 1) = 1;
   outliers.samples(0, 0) = -2;
   outliers.samples(1, 4) = 0.5;

@@ -8,7 +8,7 @@
 
 #include <gmock/gmock.h>
 
-#include "moclean/io/read_write.hpp"
+#include "moclean/formats/read_write.hpp"
 #include "moclean/report/report.hpp"
 
 #include "cli/program.hpp"

@@ -4,7 +4,7 @@
 
 #include <gmock/gmock.h>
 
-#include "moclean/io/read_write.hpp"
+#include "moclean/formats/read_write.hpp"
 
 #include "cli/program.hpp"
 #include "support/matrix.hpp"
@@ -17,8 +17,8 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 // A walk of 120 Hz with a gap of 12 frames and one of 36.
-Clip walk_with_gaps() {
-  Clip walk = synthetic_walk(90);
+Recording walk_with_gaps() {
+  Recording walk = synthetic_walk(90);
   walk.samples.block(10, 3, 12, 3).setConstant(std::nan(""));
   walk.samples.block(40, 6, 36, 3).setConstant(std::nan(""));
   return walk;
@@ -33,7 +33,7 @@ class Gaps : public ::testing::Test {
   }
 
   TemporaryFolder folder_;
-  Clip walk_ = walk_with_gaps();
+  Recording walk_ = walk_with_gaps();
   std::string csv_ = folder_.write("walk.csv", walk_);
   std::string output_ = folder_ / "clean.npy";
 };
@@ -43,8 +43,8 @@ TEST_F(Gaps, LongOnesStayMissingAndTheMaskSaysSo) {
                                    "--mask", folder_ / "mask.csv", "--json", folder_ / "run.json"});
 
   ASSERT_THAT(outcome.exit_code, ::testing::AnyOf(0, 3)) << outcome.err;
-  const Matrix clean = read_clip(output_).samples;
-  const Matrix mask = read_clip(folder_ / "mask.csv").samples;
+  const Matrix clean = read_recording(output_).samples;
+  const Matrix mask = read_recording(folder_ / "mask.csv").samples;
   EXPECT_EQ(clean.array().isNaN().count(), 36 * 3);
   EXPECT_TRUE(clean.block(40, 6, 36, 3).array().isNaN().all());
   EXPECT_TRUE((mask.block(40, 6, 36, 3).array() == 3).all());
@@ -58,8 +58,8 @@ TEST_F(Gaps, LongOnesStayMissingAndTheMaskSaysSo) {
 TEST_F(Gaps, WhatAFilterLeavesAloneIsKept) {
   ASSERT_EQ(denoise({"--method", "hampel", "--mask", folder_ / "mask.npy"}).exit_code, 0);
 
-  const Matrix clean = read_clip(output_).samples;
-  const Matrix mask = read_clip(folder_ / "mask.npy").samples;
+  const Matrix clean = read_recording(output_).samples;
+  const Matrix mask = read_recording(folder_ / "mask.npy").samples;
   EXPECT_TRUE(((mask.array() == 0) == (clean.array() == walk_.samples.array())).all());
   EXPECT_EQ((mask.array() == 3).count(), 48 * 3);
 }
@@ -71,12 +71,12 @@ TEST_F(Gaps, KeptSamplesPassThroughBitForBit) {
   auto keeping = common;
   keeping.emplace_back("--keep-observed");
   ASSERT_EQ(run(common).exit_code, 0);
-  const Matrix solved = read_clip(output_).samples;
+  const Matrix solved = read_recording(output_).samples;
 
   ASSERT_EQ(run(keeping).exit_code, 0);
 
-  const Matrix kept = read_clip(output_).samples, truth = read_clip(whole).samples;
-  const Matrix mask = read_clip(folder_ / "mask.npy").samples;
+  const Matrix kept = read_recording(output_).samples, truth = read_recording(whole).samples;
+  const Matrix mask = read_recording(folder_ / "mask.npy").samples;
   EXPECT_GT((mask.array() == 0).count(), 0);
   for (Index f = 0; f < kept.rows(); ++f)
     for (Index c = 0; c < kept.cols(); ++c)
@@ -91,8 +91,8 @@ TEST_F(Gaps, MasksOfSeveralTakesGoIntoAFolder) {
                                folder_ / "masks", "--method", "median"});
 
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_EQ(read_clip(folder_ / "masks/a.npy").frames(), 30);
-  EXPECT_EQ(read_clip(folder_ / "masks/b.csv").frames(), 40);
+  EXPECT_EQ(read_recording(folder_ / "masks/a.npy").frames(), 30);
+  EXPECT_EQ(read_recording(folder_ / "masks/b.csv").frames(), 40);
 }
 
 TEST_F(Gaps, AMaskInTheWayOfAnotherResultIsRefused) {

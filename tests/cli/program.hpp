@@ -1,42 +1,14 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 #include <sys/types.h>
 
-#include "moclean/motion/clip.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace moclean::test {
-
-/// A new folder that is removed with everything in it.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  /// The path of a file in the folder.
-  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-
-  /// Writes a clip and returns its path.
-  std::string write(const std::string& name, const Clip& clip) const;
-
-  /// Writes a text file and returns its path.
-  std::string write_text(const std::string& name, const std::string& text) const;
-
-  /// The names of everything in it, hidden files included, sorted; sub-folders as `name/file`.
-  std::vector<std::string> names() const;
-
- private:
-  std::filesystem::path path_;
-};
-
-/// The whole content of a file.
-std::string content(const std::filesystem::path& file);
 
 /// How a run of `moclean` ended.
 struct Outcome {

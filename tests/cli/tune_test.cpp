@@ -6,7 +6,7 @@
 #include <gmock/gmock.h>
 #include <unistd.h>
 
-#include "moclean/io/read_write.hpp"
+#include "moclean/formats/read_write.hpp"
 
 #include "cli/program.hpp"
 #include "support/matrix.hpp"

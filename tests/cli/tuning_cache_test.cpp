@@ -1,4 +1,4 @@
-#include "cli/tuning_cache.hpp"
+#include "cli/backend/tuning_cache.hpp"
 
 #include <cstdlib>
 

@@ -15,8 +15,8 @@ using testing::ThrowsMessage;
 
 Denoised result_of(const Matrix& low_rank, const Matrix& sparse) {
   Denoised result;
-  result.clip.samples = low_rank;
-  result.outliers.samples = sparse;
+  result.motion = low_rank;
+  result.outliers = sparse;
   result.segments = {{0, 1, {.iterations = 30, .rank = 4}}, {1, 1, {.iterations = 31, .rank = 5}}};
   return result;
 }

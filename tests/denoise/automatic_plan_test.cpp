@@ -20,13 +20,14 @@ using testing::ElementsAre;
 
 // Three motions of rank 2 in 12 columns, one after the other: each a pair of harmonics of its own,
 // mixed into the columns at random. A segment across a change has rank 4.
-Clip three_motions(Index frames, Index first_change, Index second_change, std::uint64_t seed = 1) {
+Recording three_motions(Index frames, Index first_change, Index second_change,
+                        std::uint64_t seed = 1) {
   constexpr Index columns = 12;
   Random random(seed);
-  Clip take{.samples = Matrix(frames, columns),
-            .columns = default_column_names(columns),
-            .frame_rate = 120,
-            .unit = ""};
+  Recording take{.samples = Matrix(frames, columns),
+                 .columns = default_column_names(columns),
+                 .frame_rate = 120,
+                 .unit = ""};
   Matrix mix(6, columns);
   for (double& entry : mix.reshaped()) entry = 6 * random.uniform() - 3;
   for (Index f = 0; f < frames; ++f) {
@@ -38,27 +39,28 @@ Clip three_motions(Index frames, Index first_change, Index second_change, std::u
   return take;
 }
 
-Clip noisy(const Clip& take) {
+Recording noisy(const Recording& take) {
   return corrupt(take, GaussianFrames{.fraction = 0.3, .mean = 1, .sd = 1.2}, 1).clip;
 }
 
-std::vector<SegmentPlan> plans_of(const std::vector<Clip>& takes, std::vector<Index> segments) {
+std::vector<SegmentPlan> plans_of(const std::vector<Recording>& takes,
+                                  std::vector<Index> segments) {
   ReferenceBackend backend(2);
   return automatic_plans(takes, segments, RobustPca{}, backend);
 }
 
 TEST(AutomaticPlans, CutWhereTheMotionChanges) {
-  const Clip take = noisy(three_motions(240, 60, 180));  // parts of 20 frames
+  const Recording take = noisy(three_motions(240, 60, 180));  // parts of 20 frames
 
   EXPECT_THAT(plans_of({take}, {3}).at(0), ElementsAre(0, 60, 180, 240));
 }
 
 TEST(AutomaticPlans, AreTheSameTogetherAndAloneAndAgain) {
-  Clip narrow = noisy(three_motions(200, 120, 160, 3));
+  Recording narrow = noisy(three_motions(200, 120, 160, 3));
   narrow.samples.conservativeResize(200, 9);
   narrow.columns.resize(9);
-  const std::vector<Clip> takes = {noisy(three_motions(240, 60, 180)), narrow,
-                                   noisy(three_motions(160, 60, 100, 2))};
+  const std::vector<Recording> takes = {noisy(three_motions(240, 60, 180)), narrow,
+                                        noisy(three_motions(160, 60, 100, 2))};
 
   const std::vector<SegmentPlan> together = plans_of(takes, {3, 2, 2});
 
@@ -69,7 +71,7 @@ TEST(AutomaticPlans, AreTheSameTogetherAndAloneAndAgain) {
 }
 
 TEST(AutomaticPlans, DivideShortTakesEqually) {
-  const Clip take = noisy(three_motions(40, 10, 30));
+  const Recording take = noisy(three_motions(40, 10, 30));
 
   EXPECT_THAT(plans_of({take}, {1}).at(0), ElementsAre(0, 40));
   EXPECT_THAT(plans_of({take}, {3}).at(0), ElementsAre(0, 13, 26, 40));
@@ -78,7 +80,7 @@ TEST(AutomaticPlans, DivideShortTakesEqually) {
 TEST(AutomaticPlans, StopWhenAsked) {
   std::stop_source stop;
   stop.request_stop();
-  const std::vector<Clip> takes = {noisy(three_motions(240, 60, 180))};
+  const std::vector<Recording> takes = {noisy(three_motions(240, 60, 180))};
   const std::vector<Index> segments = {3};
   ReferenceBackend backend(1);
 
@@ -86,14 +88,14 @@ TEST(AutomaticPlans, StopWhenAsked) {
 }
 
 TEST(AutomaticSegments, BringSlraCloserToTheTruthThanEqualOnes) {
-  const Clip truth = three_motions(240, 60, 180);
-  const Clip take = noisy(truth);
+  const Recording truth = three_motions(240, 60, 180);
+  const Recording take = noisy(truth);
   ReferenceBackend backend(2);
   const auto fd = [&](const Segmentation& segmentation) {
     const Denoised result =
         LowRankDenoiser(segmentation, RobustPca{}, backend).denoise({&take, 1}).at(0);
     EXPECT_EQ(result.segments.size(), 3u);
-    return frobenius_distance(truth.samples, result.clip.samples);
+    return frobenius_distance(truth.samples, result.motion);
   };
 
   EXPECT_LT(fd({.segments = 3, .automatic = true}), 0.9 * fd({.segments = 3}));

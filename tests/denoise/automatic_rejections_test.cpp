@@ -14,14 +14,14 @@ namespace {
 constexpr Index frames = 400, joints = test::hand_joints;
 constexpr double noise = 0.01;  // a hundredth of a bone
 
-Clip limbs() {
+Recording limbs() {
   return {.samples = test::limbs_with_hand(frames),
           .columns = default_column_names(3 * joints),
           .frame_rate = 120,
           .unit = ""};
 }
 
-Clip noisy(Clip clip) {
+Recording noisy(Recording clip) {
   Random random(5);
   for (double& x : clip.samples.reshaped()) x += noise * random.normal();
   return clip;
@@ -29,7 +29,7 @@ Clip noisy(Clip clip) {
 
 // The joints of the hand are at the other side of the wrist for a moment, one a little later: bones
 // hold, but not the distances within the hand.
-Clip with_flips(Clip clip) {
+Recording with_flips(Recording clip) {
   for (const Index first : {120, 260}) {
     test::flip(9, first, first + 12, clip.samples);
     test::flip(10, first + 1, first + 13, clip.samples);
@@ -38,7 +38,7 @@ Clip with_flips(Clip clip) {
   return clip;
 }
 
-Clip with_bursts(Clip clip) {
+Recording with_bursts(Recording clip) {
   Random random(3);
   for (Index first = 20; first + 12 < frames; first += 24) {
     const auto joint = static_cast<Index>(random.uniform() * joints);
@@ -49,30 +49,30 @@ Clip with_bursts(Clip clip) {
   return clip;
 }
 
-double rms(const Clip& a, const Clip& b) {
+double rms(const Recording& a, const Recording& b) {
   return (a.samples - b.samples).norm() / std::sqrt(static_cast<double>(a.samples.size()));
 }
 
-Denoised cleaned(const Clip& clip, Rejection reject) {
+Denoised cleaned(const Recording& clip, Rejection reject) {
   ReferenceBackend backend(2);
   return AutomaticDenoiser({.reject = reject}, backend).denoise(std::vector{clip})[0];
 }
 
 TEST(AutomaticRejections, AreTakenBackWhereDistancesBlameNobody) {
-  const Clip truth = with_flips(limbs()), take = noisy(truth);
+  const Recording truth = with_flips(limbs()), take = noisy(truth);
   const Denoised on = cleaned(take, Rejection::on), compared = cleaned(take, Rejection::automatic);
 
   EXPECT_FALSE(on.trusted->all());
   EXPECT_GT(compared.trusted->count(), on.trusted->count());
-  EXPECT_LT(rms(compared.clip, truth), 0.9 * rms(on.clip, truth));
+  EXPECT_LT(rms(compared.motion, truth), 0.9 * rms(on.motion, truth));
 }
 
 TEST(AutomaticRejections, StayWhereDistancesBlameThem) {
-  const Clip take = noisy(with_bursts(limbs()));
+  const Recording take = noisy(with_bursts(limbs()));
   const Denoised on = cleaned(take, Rejection::on), compared = cleaned(take, Rejection::automatic);
 
   EXPECT_FALSE(on.trusted->all());
-  EXPECT_EQ(compared.clip.samples, on.clip.samples);
+  EXPECT_EQ(compared.motion, on.motion);
 }
 
 }  // namespace

@@ -20,11 +20,11 @@ using testing::ThrowsMessage;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-Clip noisy_walk(Index frames) {
+Recording noisy_walk(Index frames) {
   return corrupt(test::synthetic_walk(frames), GaussianFrames{.fraction = 0.3}, 1).clip;
 }
 
-Denoised run(std::string_view chain, const Clip& take, const Monitor& monitor = {}) {
+Denoised run(std::string_view chain, const Recording& take, const Monitor& monitor = {}) {
   ReferenceBackend backend(2);
   return ChainDenoiser(parse_chain(chain), &backend, 2).denoise({&take, 1}, monitor).at(0);
 }
@@ -145,76 +145,76 @@ TEST(ParseChain, NamesWhatIsWrongAndWhatWouldBeRight) {
 }
 
 TEST(ChainDenoiser, OfOneMatrixMethodIsThatMethod) {
-  const Clip take = noisy_walk(80);
+  const Recording take = noisy_walk(80);
   ReferenceBackend backend;
   LowRankDenoiser plain({.length = 40}, RobustPca{}, backend);
 
   const Denoised expected = plain.denoise({&take, 1}).at(0);
   const Denoised result = run("slra:segment-length=40", take);
 
-  EXPECT_TRUE(test::same_bits(result.clip.samples, expected.clip.samples));
-  EXPECT_TRUE(test::same_bits(result.outliers.samples, expected.outliers.samples));
+  EXPECT_TRUE(test::same_bits(result.motion, expected.motion));
+  EXPECT_TRUE(test::same_bits(result.outliers, expected.outliers));
   EXPECT_EQ(result.segments.size(), 2u);
 }
 
 TEST(ChainDenoiser, RunsItsStepsOneAfterTheOther) {
-  const Clip take = noisy_walk(80);
+  const Recording take = noisy_walk(80);
 
   const Denoised result = run("hampel+tsvd:rank=6+butterworth:cutoff=10", take);
 
-  const Clip first = filtered(take, Hampel{});
-  const Clip second = run("tsvd:rank=6", first).clip;
-  const Clip third = filtered(second, Butterworth{.cutoff = 10});
-  EXPECT_TRUE(test::same_bits(result.clip.samples, third.samples));
-  EXPECT_TRUE(test::same_bits(result.outliers.samples, Matrix(take.samples - third.samples)));
+  const Recording first = like(take, filtered(take, Hampel{}));
+  const Recording second = like(take, run("tsvd:rank=6", first).motion);
+  const Matrix third = filtered(second, Butterworth{.cutoff = 10});
+  EXPECT_TRUE(test::same_bits(result.motion, third));
+  EXPECT_TRUE(test::same_bits(result.outliers, Matrix(take.samples - third)));
   ASSERT_EQ(result.segments.size(), 1u);
   EXPECT_EQ(result.segments[0].outcome.rank, 6);
 }
 
 TEST(ChainDenoiser, OfFiltersNeedsNoBackendAndKeepsGaps) {
-  Clip take = noisy_walk(60);
+  Recording take = noisy_walk(60);
   take.samples.block(10, 3, 9, 3).setConstant(nan);
 
   ChainDenoiser denoiser(parse_chain("hampel+median"), nullptr);
   const Denoised result = denoiser.denoise({&take, 1}).at(0);
 
   EXPECT_TRUE(result.segments.empty());
-  EXPECT_TRUE((result.clip.samples.array().isNaN() == take.samples.array().isNaN()).all());
-  EXPECT_TRUE(result.outliers.samples.allFinite());
-  EXPECT_EQ(result.outliers.samples.block(10, 3, 9, 3).norm(), 0);
+  EXPECT_TRUE((result.motion.array().isNaN() == take.samples.array().isNaN()).all());
+  EXPECT_TRUE(result.outliers.allFinite());
+  EXPECT_EQ(result.outliers.block(10, 3, 9, 3).norm(), 0);
 }
 
 TEST(ChainDenoiser, CompletesWhatIsMissing) {
-  const Clip walk = test::synthetic_walk(120);
-  const Clip take = corrupt(walk, Gap{.runs = {.count = 3, .length = 20}}, 1).clip;
+  const Recording walk = test::synthetic_walk(120);
+  const Recording take = corrupt(walk, Gap{.runs = {.count = 3, .length = 20}}, 1).clip;
 
   const Denoised result = run("completion", take);
 
-  EXPECT_TRUE(result.clip.samples.allFinite());
-  EXPECT_LT(frobenius_distance(walk.samples, result.clip.samples), 0.5);
+  EXPECT_TRUE(result.motion.allFinite());
+  EXPECT_LT(frobenius_distance(walk.samples, result.motion), 0.5);
   EXPECT_THROW(run("tsvd", take), ShapeError);
   EXPECT_THROW(run("median+tsvd", take), ShapeError);
   EXPECT_NO_THROW(run("median+completion+slra", take));
   const Denoised smooth = run("median+tslra:tolerance=1e-3", take);
-  EXPECT_TRUE(smooth.clip.samples.allFinite());
-  EXPECT_LT(frobenius_distance(walk.samples, smooth.clip.samples), 0.5);
+  EXPECT_TRUE(smooth.motion.allFinite());
+  EXPECT_LT(frobenius_distance(walk.samples, smooth.motion), 0.5);
 }
 
 TEST(ChainDenoiser, InterpolatesForMethodsThatNeedEverySample) {
-  Clip take = noisy_walk(60);
+  Recording take = noisy_walk(60);
   take.samples.block(10, 3, 9, 3).setConstant(nan);
 
   const Denoised result = run("interpolate+tsvd:rank=6", take);
 
-  const Clip whole = filtered(take, Interpolate{});
+  const Recording whole = like(take, filtered(take, Interpolate{}));
   EXPECT_TRUE(whole.samples.allFinite());
-  EXPECT_TRUE(test::same_bits(result.clip.samples, run("tsvd:rank=6", whole).clip.samples));
-  EXPECT_TRUE(result.outliers.samples.allFinite());
-  EXPECT_EQ(result.outliers.samples.block(10, 3, 9, 3).norm(), 0);
+  EXPECT_TRUE(test::same_bits(result.motion, run("tsvd:rank=6", whole).motion));
+  EXPECT_TRUE(result.outliers.allFinite());
+  EXPECT_EQ(result.outliers.block(10, 3, 9, 3).norm(), 0);
 }
 
 TEST(ChainDenoiser, CountsTheSegmentsOfAllItsMethods) {
-  const Clip take = noisy_walk(80);
+  const Recording take = noisy_walk(80);
   std::vector<Progress> reports;
 
   run("tsvd:segments=4+median+svt:segments=2", take,
@@ -238,7 +238,7 @@ TEST(ChainDenoiser, StopsWhenAsked) {
 }
 
 TEST(ChainDenoiser, RefusesWhatItCannotRun) {
-  Clip take = noisy_walk(20);
+  Recording take = noisy_walk(20);
   take.frame_rate = 0;
 
   EXPECT_THAT([&] { run("butterworth", take); },

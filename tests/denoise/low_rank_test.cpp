@@ -19,19 +19,19 @@ namespace {
 using testing::ElementsAre;
 using testing::ThrowsMessage;
 
-Clip noisy_walk(Index frames, std::uint64_t seed) {
+Recording noisy_walk(Index frames, std::uint64_t seed) {
   return corrupt(test::synthetic_walk(frames, seed), GaussianFrames{.fraction = 0.3}, seed).clip;
 }
 
 // A take of fewer columns than the walk's 93.
-Clip narrow(const Clip& clip, Index columns) {
-  Clip result = clip;
+Recording narrow(const Recording& clip, Index columns) {
+  Recording result = clip;
   result.samples = clip.samples.leftCols(columns);
   result.columns.resize(static_cast<std::size_t>(columns));
   return result;
 }
 
-std::vector<Denoised> denoise(const std::vector<Clip>& takes, const Segmentation& segmentation,
+std::vector<Denoised> denoise(const std::vector<Recording>& takes, const Segmentation& segmentation,
                               const Monitor& monitor = {}) {
   ReferenceBackend backend(2);
   return LowRankDenoiser(segmentation, RobustPca{}, backend).denoise(takes, monitor);
@@ -46,19 +46,16 @@ TEST(SegmentationPlan, PrefersWholeThenANumberThenALength) {
 }
 
 TEST(LowRankDenoiser, SplitsATakeIntoMotionAndOutliers) {
-  const Clip take = noisy_walk(120, 1);
+  const Recording take = noisy_walk(120, 1);
 
   const Denoised result = denoise({take}, {.length = 40}).at(0);
 
-  const Matrix sum = result.clip.samples + result.outliers.samples;
+  const Matrix sum = result.motion + result.outliers;
   EXPECT_LE(test::relative_difference(sum, take.samples), RobustPca{}.tolerance);
-  EXPECT_EQ(result.clip.columns, take.columns);
-  EXPECT_EQ(result.outliers.columns, take.columns);
-  EXPECT_EQ(result.clip.frame_rate, 120);
 }
 
 TEST(LowRankDenoiser, StitchesTheSolutionsOfItsSegments) {
-  const Clip take = noisy_walk(100, 1);
+  const Recording take = noisy_walk(100, 1);
 
   const Denoised result = denoise({take}, {.segments = 3}).at(0);
 
@@ -66,10 +63,10 @@ TEST(LowRankDenoiser, StitchesTheSolutionsOfItsSegments) {
   for (const DenoisedSegment& segment : result.segments) {
     const Matrix rows = take.samples.middleRows(segment.first_frame, segment.frames);
     const Solution alone = ReferenceBackend().solve(test::batch_of({rows}), RobustPca{});
-    const auto own = [&](const Clip& clip) -> Matrix {
-      return clip.samples.middleRows(segment.first_frame, segment.frames);
+    const auto own = [&](const Matrix& samples) -> Matrix {
+      return samples.middleRows(segment.first_frame, segment.frames);
     };
-    EXPECT_TRUE(test::same_bits(own(result.clip), Matrix(alone.low_rank.segment(0))));
+    EXPECT_TRUE(test::same_bits(own(result.motion), Matrix(alone.low_rank.segment(0))));
     EXPECT_TRUE(test::same_bits(own(result.outliers), Matrix(alone.sparse.segment(0))));
     EXPECT_EQ(segment.outcome.iterations, alone.segments[0].iterations);
     EXPECT_EQ(segment.outcome.rank, alone.segments[0].rank);
@@ -87,29 +84,28 @@ TEST(LowRankDenoiser, SolvesTheWholeTakeAsOneSegment) {
 }
 
 TEST(LowRankDenoiser, GivesTheSameBitsForTakesTogetherAndAlone) {
-  const std::vector<Clip> takes = {noisy_walk(90, 1), narrow(noisy_walk(70, 2), 12),
-                                   noisy_walk(45, 3), narrow(noisy_walk(30, 4), 12)};
+  const std::vector<Recording> takes = {noisy_walk(90, 1), narrow(noisy_walk(70, 2), 12),
+                                        noisy_walk(45, 3), narrow(noisy_walk(30, 4), 12)};
 
   const std::vector<Denoised> together = denoise(takes, {.length = 40});
 
   ASSERT_EQ(together.size(), takes.size());
   for (std::size_t t = 0; t < takes.size(); ++t) {
     const Denoised alone = denoise({takes[t]}, {.length = 40}).at(0);
-    EXPECT_TRUE(test::same_bits(together[t].clip.samples, alone.clip.samples)) << t;
-    EXPECT_TRUE(test::same_bits(together[t].outliers.samples, alone.outliers.samples)) << t;
+    EXPECT_TRUE(test::same_bits(together[t].motion, alone.motion)) << t;
+    EXPECT_TRUE(test::same_bits(together[t].outliers, alone.outliers)) << t;
     EXPECT_EQ(together[t].segments.size(), alone.segments.size());
   }
 }
 
 TEST(LowRankDenoiser, GivesTheSameBitsTogetherAndAloneWithOverlap) {
-  const std::vector<Clip> takes = {noisy_walk(60, 1), noisy_walk(45, 3)};
+  const std::vector<Recording> takes = {noisy_walk(60, 1), noisy_walk(45, 3)};
   const Segmentation segmentation{.length = 20, .overlap = 8};
 
   const std::vector<Denoised> together = denoise(takes, segmentation);
 
   for (std::size_t t = 0; t < takes.size(); ++t)
-    EXPECT_TRUE(test::same_bits(together[t].clip.samples,
-                                denoise({takes[t]}, segmentation).at(0).clip.samples))
+    EXPECT_TRUE(test::same_bits(together[t].motion, denoise({takes[t]}, segmentation).at(0).motion))
         << t;
 }
 
@@ -151,7 +147,7 @@ TEST(LowRankDenoiser, HandsTheStopRequestOn) {
 TEST(LowRankDenoiser, AcceptsNoTakes) { EXPECT_TRUE(denoise({}, {}).empty()); }
 
 TEST(LowRankDenoiser, RefusesMissingSamplesByTakeFrameAndColumn) {
-  std::vector<Clip> takes = {noisy_walk(30, 1), noisy_walk(30, 2)};
+  std::vector<Recording> takes = {noisy_walk(30, 1), noisy_walk(30, 2)};
   takes[1].samples(7, 4) = std::numeric_limits<double>::quiet_NaN();
 
   ReferenceBackend backend;
@@ -164,7 +160,7 @@ TEST(LowRankDenoiser, RefusesMissingSamplesByTakeFrameAndColumn) {
 
 TEST(LowRankDenoiser, LeavesAColumnThatWasNeverObservedMissingAndNamesIt) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  Clip take = noisy_walk(60, 1);
+  Recording take = noisy_walk(60, 1);
   take.samples.col(4).setConstant(nan);
   take.samples.block(10, 9, 8, 3).setConstant(nan);
   take.samples.block(0, 20, 30, 1).setConstant(nan);  // the whole of the first segment
@@ -176,18 +172,18 @@ TEST(LowRankDenoiser, LeavesAColumnThatWasNeverObservedMissingAndNamesIt) {
     const Denoised result = denoiser.denoise({&take, 1}).at(0);
 
     EXPECT_THAT(result.unobserved, ElementsAre("joint1.y"));
-    EXPECT_TRUE(result.clip.samples.col(4).array().isNaN().all());
-    EXPECT_EQ(result.clip.samples.array().isNaN().count(), 60);
-    EXPECT_TRUE(result.outliers.samples.allFinite());
-    EXPECT_EQ(result.outliers.samples.col(4).norm(), 0);
+    EXPECT_TRUE(result.motion.col(4).array().isNaN().all());
+    EXPECT_EQ(result.motion.array().isNaN().count(), 60);
+    EXPECT_TRUE(result.outliers.allFinite());
+    EXPECT_EQ(result.outliers.col(4).norm(), 0);
   }
   EXPECT_THAT(denoise({noisy_walk(60, 1)}, {})[0].unobserved, ElementsAre());
 }
 
 TEST(LowRankDenoiser, RefusesEmptyAndMisnamedTakes) {
-  Clip empty = noisy_walk(30, 1);
+  Recording empty = noisy_walk(30, 1);
   empty.samples.resize(0, 93);
-  Clip misnamed = noisy_walk(30, 1);
+  Recording misnamed = noisy_walk(30, 1);
   misnamed.columns.pop_back();
 
   EXPECT_THAT([&] { denoise({empty}, {}); },
@@ -199,14 +195,14 @@ TEST(LowRankDenoiser, RefusesEmptyAndMisnamedTakes) {
 // As in the paper's tables: cleaning helps, and short segments help more than the whole take.
 // Measured here: noisy 0.63, whole 0.21, 200 frames 0.12.
 TEST(LowRankDenoiser, BringsAWalkCloserToTheTruthWithShorterSegments) {
-  const Clip truth = test::synthetic_walk(1200);
-  const Clip noisy = corrupt(truth, GaussianFrames{.frames = 400}, 1).clip;
-  const auto fd = [&](const Clip& clip) { return frobenius_distance(truth.samples, clip.samples); };
+  const Recording truth = test::synthetic_walk(1200);
+  const Recording noisy = corrupt(truth, GaussianFrames{.frames = 400}, 1).clip;
+  const auto fd = [&](const Matrix& motion) { return frobenius_distance(truth.samples, motion); };
 
-  const Clip whole = denoise({noisy}, {.whole = true}).at(0).clip;
-  const Clip segmented = denoise({noisy}, {.length = 200}).at(0).clip;
+  const Matrix whole = denoise({noisy}, {.whole = true}).at(0).motion;
+  const Matrix segmented = denoise({noisy}, {.length = 200}).at(0).motion;
 
-  EXPECT_LT(fd(whole), fd(noisy) / 2);
+  EXPECT_LT(fd(whole), fd(noisy.samples) / 2);
   EXPECT_LT(fd(segmented), fd(whole));
 }
 

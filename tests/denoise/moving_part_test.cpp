@@ -15,11 +15,11 @@ using testing::ElementsAre;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // A joint that moves, one that does not, and a column of each kind.
-Clip small_take() {
-  Clip take{.samples = Matrix(3, 8),
-            .columns = {"a.x", "a.y", "a.z", "b.x", "b.y", "b.z", "time", "weight"},
-            .frame_rate = 60,
-            .unit = "mm"};
+Recording small_take() {
+  Recording take{.samples = Matrix(3, 8),
+                 .columns = {"a.x", "a.y", "a.z", "b.x", "b.y", "b.z", "time", "weight"},
+                 .frame_rate = 60,
+                 .unit = "mm"};
   take.samples << 1, 7, 2, 0, 0, 0, 10, 70,  //
       2, 7, nan, 0, 0, 0, 20, 70,            //
       4, 7, 5, 0, nan, 0, 30, nan;
@@ -28,12 +28,10 @@ Clip small_take() {
 
 // What a method might say of the part.
 Denoised result_for(const MovingPart& part, const Matrix& motion) {
-  Clip clip = part.clip;
-  clip.samples = motion;
-  Clip sigma = clip;
-  sigma.samples.setConstant(0.5);
-  return {
-      .clip = clip, .outliers = {}, .sigma = sigma, .trusted = !part.clip.samples.array().isNaN()};
+  return {.motion = motion,
+          .outliers = {},
+          .sigma = Matrix::Constant(motion.rows(), motion.cols(), 0.5),
+          .trusted = !part.clip.samples.array().isNaN()};
 }
 
 TEST(MovingPart, LeavesOutWhatStandsStillAndCentresTheRest) {
@@ -50,7 +48,7 @@ TEST(MovingPart, LeavesOutWhatStandsStillAndCentresTheRest) {
 }
 
 TEST(MovingPart, KeepsDistancesOfJoints) {
-  Clip take = small_take();
+  Recording take = small_take();
   take.samples.block(0, 3, 3, 3) << 5, 5, 5, 6, 5, 5, 8, 6, 5;
 
   const MovingPart part = moving_part(take, true);
@@ -61,7 +59,7 @@ TEST(MovingPart, KeepsDistancesOfJoints) {
 }
 
 TEST(MovingPart, TakesZerosForLostOnlyWhereItIsTold) {
-  Clip take = small_take();
+  Recording take = small_take();
   take.samples = Matrix(5, 8);
   for (Index i = 0; i < 5; ++i)
     take.samples.row(i) << 5, 5, 5 + 0.1 * static_cast<double>(i), 0, 0, 0, 1, 1;
@@ -72,7 +70,7 @@ TEST(MovingPart, TakesZerosForLostOnlyWhereItIsTold) {
 }
 
 TEST(PutBack, KeepsUnchangedSamplesToTheLastBitAndStillColumns) {
-  Clip take = small_take();
+  Recording take = small_take();
   take.samples.col(0) << 0.1, 0.7, 1e4 / 3;  // minus 0.7 and plus 0.7 are not the same again
   const MovingPart part = moving_part(take, true);
   Matrix motion = part.clip.samples;
@@ -83,20 +81,18 @@ TEST(PutBack, KeepsUnchangedSamplesToTheLastBitAndStillColumns) {
 
   put_back(take, part, result);
 
-  EXPECT_TRUE(result.clip.samples(0, 0) == 0.1 && result.clip.samples(2, 0) == 1e4 / 3);
-  EXPECT_EQ(result.clip.samples(1, 0), 0.25 + 0.7);
-  EXPECT_EQ(result.outliers.samples(1, 0), 0.7 - (0.25 + 0.7));
-  EXPECT_EQ(result.outliers.samples.cwiseAbs().sum(), std::abs(result.outliers.samples(1, 0)));
-  EXPECT_EQ(result.clip.samples(1, 2), 4);
-  EXPECT_TRUE((result.clip.samples.col(7).array() == 70).all());
-  EXPECT_TRUE((result.clip.samples.middleCols(3, 3).array() == 0).all());
+  EXPECT_TRUE(result.motion(0, 0) == 0.1 && result.motion(2, 0) == 1e4 / 3);
+  EXPECT_EQ(result.motion(1, 0), 0.25 + 0.7);
+  EXPECT_EQ(result.outliers(1, 0), 0.7 - (0.25 + 0.7));
+  EXPECT_EQ(result.outliers.cwiseAbs().sum(), std::abs(result.outliers(1, 0)));
+  EXPECT_EQ(result.motion(1, 2), 4);
+  EXPECT_TRUE((result.motion.col(7).array() == 70).all());
+  EXPECT_TRUE((result.motion.middleCols(3, 3).array() == 0).all());
   EXPECT_FALSE((*result.trusted)(1, 0) || (*result.trusted)(2, 4) || (*result.trusted)(2, 7));
   EXPECT_TRUE((*result.trusted)(0, 4) && (*result.trusted)(0, 7));
-  EXPECT_EQ(result.sigma->samples(0, 7), 0);
-  EXPECT_TRUE(std::isnan(result.sigma->samples(2, 7)));
-  EXPECT_EQ(result.sigma->samples(0, 6), 0.5);
-  EXPECT_EQ(result.clip.columns, take.columns);
-  EXPECT_EQ(result.clip.unit, "mm");
+  EXPECT_EQ((*result.sigma)(0, 7), 0);
+  EXPECT_TRUE(std::isnan((*result.sigma)(2, 7)));
+  EXPECT_EQ((*result.sigma)(0, 6), 0.5);
 }
 
 }  // namespace

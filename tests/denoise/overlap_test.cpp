@@ -18,7 +18,8 @@ namespace {
 
 using testing::ElementsAre;
 
-Denoised denoise(const Clip& take, const Segmentation& segmentation, Method method = RobustPca{}) {
+Denoised denoise(const Recording& take, const Segmentation& segmentation,
+                 Method method = RobustPca{}) {
   ReferenceBackend backend(2);
   return LowRankDenoiser(segmentation, std::move(method), backend).denoise({&take, 1}).at(0);
 }
@@ -51,7 +52,7 @@ Seams seams(const Matrix& error, const SegmentPlan& plan, Index reach) {
 }
 
 TEST(Overlap, GivesEverySegmentItsSharedFrames) {
-  const Clip take = test::synthetic_walk(100);
+  const Recording take = test::synthetic_walk(100);
 
   const Denoised result = denoise(take, {.segments = 3, .overlap = 10});
 
@@ -66,35 +67,37 @@ TEST(Overlap, GivesEverySegmentItsSharedFrames) {
 }
 
 TEST(Overlap, SplitsTheTakeAsItsSegmentsDo) {
-  const Clip take = corrupt(test::synthetic_walk(120), GaussianFrames{.fraction = 0.3}, 1).clip;
+  const Recording take =
+      corrupt(test::synthetic_walk(120), GaussianFrames{.fraction = 0.3}, 1).clip;
 
   const Denoised result = denoise(take, {.length = 40, .overlap = 16});
 
-  const Matrix sum = result.clip.samples + result.outliers.samples;
+  const Matrix sum = result.motion + result.outliers;
   EXPECT_LE(test::relative_difference(sum, take.samples), RobustPca{}.tolerance);
-  EXPECT_TRUE((result.outliers.samples.array() == 0).any());
+  EXPECT_TRUE((result.outliers.array() == 0).any());
 }
 
 TEST(Overlap, LeavesTheFramesOfOneSegmentAsTheyAre) {
-  const Clip take = corrupt(test::synthetic_walk(120), GaussianFrames{.fraction = 0.3}, 1).clip;
+  const Recording take =
+      corrupt(test::synthetic_walk(120), GaussianFrames{.fraction = 0.3}, 1).clip;
 
   const Denoised result = denoise(take, {.segments = 2, .overlap = 20});
 
   const Solution first =
       ReferenceBackend().solve(test::batch_of({take.samples.topRows(70)}), RobustPca{});
-  EXPECT_TRUE(test::same_bits(Matrix(result.clip.samples.topRows(50)),
+  EXPECT_TRUE(test::same_bits(Matrix(result.motion.topRows(50)),
                               Matrix(first.low_rank.segment(0).topRows(50))));
 }
 
 // Rank 8 leaves another part of the walk away in every segment: a cut shows. Measured: 0.88 at the
 // boundaries and 0.0041 elsewhere without overlap, 0.0044 and 0.0052 with 60 shared frames.
 TEST(Overlap, LeavesNoSeamWhereACutDoes) {
-  const Clip walk = test::synthetic_walk(800);
+  const Recording walk = test::synthetic_walk(800);
   const SegmentPlan plan = segments_of_length(800, 200);
   const auto seams_with = [&](Index overlap) {
     const Denoised result =
         denoise(walk, {.length = 200, .overlap = overlap}, TruncatedSvd{.rank = 8});
-    return seams(result.clip.samples - walk.samples, plan, 32);  // the shared frames, and two more
+    return seams(result.motion - walk.samples, plan, 32);  // the shared frames, and two more
   };
 
   const Seams cut = seams_with(0), blended = seams_with(60);

@@ -3,7 +3,7 @@
 
 #include "moclean/denoise/agreement.hpp"
 #include "moclean/denoise/low_rank.hpp"
-#include "moclean/io/read_write.hpp"
+#include "moclean/formats/read_write.hpp"
 #include "moclean/metric/metric.hpp"
 #include "moclean/noise/noise.hpp"
 
@@ -32,11 +32,11 @@ class PaperTable3 : public testing::TestWithParam<Row> {};
 TEST_P(PaperTable3, FdOf14_06IsTheKnownFigure) {
   const auto file = test::shared_data("cmu/14/14_06.amc");
   MOCLEAN_REQUIRE_FILE(file);
-  const Clip truth = cut(read_clip(file), 0, 2800);
+  const Recording truth = cut(read_recording(file), 0, 2800);
   OpenClBackend backend(test::device());
   const Row row = GetParam();
   LowRankDenoiser denoiser({.whole = row.length == 0, .length = row.length}, RobustPca{}, backend);
-  std::vector<Clip> noisy;
+  std::vector<Recording> noisy;
   for (const std::uint64_t seed : {1, 2, 3, 4, 5})
     noisy.push_back(corrupt(truth, GaussianFrames{.frames = 900}, seed).clip);
 
@@ -59,9 +59,9 @@ class EveryCmuTake : public testing::TestWithParam<Index> {};
 
 TEST_P(EveryCmuTake, AgreesWithTheReference) {
   MOCLEAN_REQUIRE_FILE(test::shared_data("cmu"));
-  std::vector<Clip> takes;
+  std::vector<Recording> takes;
   for (const std::string take : cmu_takes)
-    takes.push_back(read_clip(test::shared_data("cmu/" + take + ".amc")));
+    takes.push_back(read_recording(test::shared_data("cmu/" + take + ".amc")));
   OpenClBackend device(test::device());
   ReferenceBackend reference(2);
   const Segmentation segmentation{.length = GetParam()};
@@ -98,10 +98,10 @@ constexpr std::array cuts = {Cut{"14/14_06", 600, 1400}, Cut{"02/02_05", 300, 11
 
 TEST(TemporalRobustPca, BeatsItsFigureOnTheNoiseOfThePaper) {
   MOCLEAN_REQUIRE_FILE(test::shared_data("cmu"));
-  std::vector<Clip> truths, noisy;
+  std::vector<Recording> truths, noisy;
   for (const auto& [take, first, last] : cuts) {
     const auto file = test::shared_data(std::string("cmu/") + take + ".amc");
-    truths.push_back(cut(read_clip(file), first, last));
+    truths.push_back(cut(read_recording(file), first, last));
     noisy.push_back(corrupt(truths.back(), GaussianFrames{.fraction = 0.3333}, 1).clip);
   }
   OpenClBackend backend(test::device());
@@ -111,7 +111,7 @@ TEST(TemporalRobustPca, BeatsItsFigureOnTheNoiseOfThePaper) {
 
   double mean = 0;
   for (std::size_t i = 0; i < cleaned.size(); ++i)
-    mean += frobenius_distance(truths[i].samples, cleaned[i].clip.samples) /
+    mean += frobenius_distance(truths[i].samples, cleaned[i].motion) /
             static_cast<double>(cleaned.size());
   RecordProperty("mean_fd", std::to_string(mean));
   EXPECT_LE(mean, 0.020);

@@ -18,7 +18,7 @@ using testing::ThrowsMessage;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // Six frames at 2 Hz of one joint and a column of its own.
-Clip take_of(Matrix samples) {
+Recording take_of(Matrix samples) {
   return {.samples = std::move(samples),
           .columns = {"hip.x", "hip.y", "hip.z", "force"},
           .frame_rate = 2,
@@ -26,115 +26,135 @@ Clip take_of(Matrix samples) {
 }
 
 // A result that is 1 everywhere, of a take that is 1 but for the given outliers.
-Denoised result_of(const Clip& take) {
+Denoised result_of(const Recording& take) {
   Denoised result;
-  result.clip = result.outliers = take;
-  result.clip.samples.setOnes();
-  result.outliers.samples = take.samples.array().isNaN().select(0, take.samples.array() - 1);
+  result.motion = Matrix::Ones(take.samples.rows(), take.samples.cols());
+  result.outliers = take.samples.array().isNaN().select(0, take.samples.array() - 1);
   return result;
 }
 
+StatusCounts counts_of(const Recording& take, const Denoised& result) {
+  return count_status(take, result, trusted_samples(take, result));
+}
+
+Matrix numbers_of(const Recording& take, const Denoised& result) {
+  return status_numbers(take, result, trusted_samples(take, result));
+}
+
 TEST(SampleStatus, SaysWhatBecameOfASample) {
-  Clip take = take_of(Matrix::Ones(6, 4));
+  Recording take = take_of(Matrix::Ones(6, 4));
   take.samples.row(2) << 1, 4, nan, nan;
   Denoised result = result_of(take);
-  result.clip.samples(2, 3) = nan;
+  result.motion(2, 3) = nan;
 
-  const Clip status = sample_status(take, result);
+  const Matrix status = numbers_of(take, result);
 
-  EXPECT_THAT(std::vector<double>(status.samples.row(2).begin(), status.samples.row(2).end()),
+  EXPECT_THAT(std::vector<double>(status.row(2).begin(), status.row(2).end()),
               ElementsAre(0, 1, 2, 3));
-  EXPECT_EQ(status.columns, take.columns);
-  EXPECT_THAT(count_status(status), ElementsAre(21, 1, 1, 1));
+  EXPECT_THAT(counts_of(take, result), ElementsAre(21, 1, 1, 1));
 }
 
 TEST(SampleStatus, TakesWhatIsWithinSigmaForKept) {
-  Clip take = take_of(Matrix::Ones(6, 4));
+  Recording take = take_of(Matrix::Ones(6, 4));
   take.samples.row(0) << 1.5, 0.4, 1, 3;
   Denoised result = result_of(take);
-  result.sigma = take;
-  result.sigma->samples.setConstant(0.55);
+  result.sigma = Matrix::Constant(6, 4, 0.55);
 
-  EXPECT_THAT(count_status(sample_status(take, result)), ElementsAre(22, 2, 0, 0));
+  EXPECT_THAT(counts_of(take, result), ElementsAre(22, 2, 0, 0));
 }
 
 TEST(SampleStatus, BelievesTheMethodThatSaysWhatItTrusted) {
-  Clip take = take_of(Matrix::Constant(6, 4, 1.5));
+  Recording take = take_of(Matrix::Constant(6, 4, 1.5));
   take.samples(1, 0) = nan;
   Denoised result = result_of(take);
   result.trusted = Mask::Constant(6, 4, true);
   (*result.trusted)(0, 2) = false;
 
-  const Clip status = sample_status(take, result);
+  const Matrix status = numbers_of(take, result);
 
-  EXPECT_EQ(status.samples(0, 2), 1);
-  EXPECT_EQ(status.samples(1, 0), 2);
-  EXPECT_THAT(count_status(status), ElementsAre(22, 1, 1, 0));
+  EXPECT_EQ(status(0, 2), 1);
+  EXPECT_EQ(status(1, 0), 2);
+  EXPECT_THAT(counts_of(take, result), ElementsAre(22, 1, 1, 0));
+}
+
+TEST(SampleStatus, CountsWhatItNumbers) {
+  Recording take = take_of(Matrix::Random(6, 4));
+  take.samples(0, 0) = take.samples(3, 1) = take.samples(5, 3) = nan;
+  Denoised result = result_of(take);
+  result.motion(3, 1) = result.motion(4, 2) = nan;
+  result.outliers.row(2).setZero();
+
+  const Matrix numbers = numbers_of(take, result);
+
+  const StatusCounts counts = counts_of(take, result);
+  for (std::size_t s = 0; s < counts.size(); ++s)
+    EXPECT_EQ((numbers.array() == static_cast<double>(s)).count(), counts[s]) << s;
 }
 
 TEST(LeaveLongGaps, LeavesGapsThatAreLonger) {
-  Clip take = take_of(Matrix::Ones(6, 4));
+  Recording take = take_of(Matrix::Ones(6, 4));
   take.samples.col(3) << nan, nan, 1, nan, nan, nan;  // 1 s, 1.5 s
   Denoised result = result_of(take);
 
   leave_long_gaps(take, 1, result);
 
-  EXPECT_THAT(count_status(sample_status(take, result)), ElementsAre(19, 0, 2, 3));
-  EXPECT_TRUE(result.clip.samples.col(3).tail(3).array().isNaN().all());
-  EXPECT_EQ(result.clip.samples(0, 3), 1);
+  EXPECT_THAT(counts_of(take, result), ElementsAre(19, 0, 2, 3));
+  EXPECT_TRUE(result.motion.col(3).tail(3).array().isNaN().all());
+  EXPECT_EQ(result.motion(0, 3), 1);
 }
 
 TEST(LeaveLongGaps, TakesTheChannelsOfAJointTogether) {
-  Clip take = take_of(Matrix::Ones(6, 4));
+  Recording take = take_of(Matrix::Ones(6, 4));
   take.samples(1, 0) = take.samples(2, 1) = take.samples(3, 2) = nan;  // three frames lack one
   take.samples(1, 3) = nan;
   Denoised result = result_of(take);
-  result.sigma = result.clip;
+  result.sigma = result.motion;
 
   leave_long_gaps(take, 1, result);
 
   const Mask expected =
       take.samples.array().isNaN() &&
       (Mask(6, 4) << Mask::Constant(6, 3, true), Mask::Constant(6, 1, false)).finished();
-  EXPECT_TRUE((result.clip.samples.array().isNaN() == expected).all());
-  EXPECT_TRUE((result.sigma->samples.array().isNaN() == expected).all());
+  EXPECT_TRUE((result.motion.array().isNaN() == expected).all());
+  EXPECT_TRUE((result.sigma->array().isNaN() == expected).all());
 }
 
 TEST(LeaveLongGaps, LeavesEveryGapWithoutATime) {
-  Clip take = take_of(Matrix::Ones(6, 4));
+  Recording take = take_of(Matrix::Ones(6, 4));
   take.samples(1, 3) = nan;
   Denoised result = result_of(take);
 
   leave_long_gaps(take, 0, result);
 
-  EXPECT_TRUE((result.clip.samples.array().isNaN() == take.samples.array().isNaN()).all());
+  EXPECT_TRUE((result.motion.array().isNaN() == take.samples.array().isNaN()).all());
 }
 
 TEST(KeepObserved, PutsTrustedSamplesBack) {
-  Clip take = take_of(Matrix::Constant(6, 4, 1.25));
+  Recording take = take_of(Matrix::Constant(6, 4, 1.25));
   take.samples.row(2) << 4, nan, 1.25, 1.25;
   Denoised result = result_of(take);
   result.trusted = take.samples.array() < 2;
 
-  keep_observed(take, result);
+  const StatusCounts before = counts_of(take, result);
+  keep_observed(take, trusted_samples(take, result), result);
 
   Matrix expected = take.samples;
   expected.row(2) << 1, 1, 1.25, 1.25;
-  EXPECT_TRUE(test::same_bits(result.clip.samples, expected));
-  EXPECT_EQ(result.outliers.samples(2, 0), 3);
-  EXPECT_EQ(result.outliers.samples.cwiseAbs().sum(), 3);
+  EXPECT_TRUE(test::same_bits(result.motion, expected));
+  EXPECT_EQ(result.outliers(2, 0), 3);
+  EXPECT_EQ(result.outliers.cwiseAbs().sum(), 3);
+  EXPECT_EQ(counts_of(take, result), before);
 }
 
 TEST(SampleStatus, RefusesWhatDoesNotFit) {
-  const Clip take = take_of(Matrix::Ones(6, 4));
-  Clip rateless = take;
+  const Recording take = take_of(Matrix::Ones(6, 4));
+  Recording rateless = take;
   rateless.frame_rate = 0;
   Denoised result = result_of(take);
   Denoised shorter = result_of(cut(take, 0, 5));
 
-  EXPECT_THAT([&] { sample_status(take, shorter); },
+  EXPECT_THAT([&] { trusted_samples(take, shorter); },
               ThrowsMessage<ShapeError>(HasSubstr("5 frames x 4 columns, the take 6 x 4")));
-  EXPECT_THROW(keep_observed(take, shorter), ShapeError);
   EXPECT_THROW(leave_long_gaps(take, 1, shorter), ShapeError);
   EXPECT_THROW(leave_long_gaps(take, -1, result), ArgumentError);
   EXPECT_THROW(leave_long_gaps(rateless, 1, result), ArgumentError);

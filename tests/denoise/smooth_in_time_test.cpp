@@ -14,7 +14,7 @@
 namespace moclean {
 namespace {
 
-Clip clip_of(Matrix samples) {
+Recording clip_of(Matrix samples) {
   const Index columns = samples.cols();
   return {.samples = std::move(samples),
           .columns = default_column_names(columns),

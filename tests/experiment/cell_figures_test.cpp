@@ -23,9 +23,9 @@ ExperimentTake row_of_joints() {
   return take;
 }
 
-Denoised as_it_is(const Clip& clip) {
+Denoised as_it_is(const Recording& clip) {
   Denoised same;
-  same.clip = same.outliers = clip;
+  same.motion = same.outliers = clip.samples;
   return same;
 }
 
@@ -43,8 +43,8 @@ class CellFigures : public ::testing::Test {
 };
 
 TEST_F(CellFigures, LeaveOutExcludedJoints) {
-  estimate_.clip.samples.col(6).array() += 2;  // the hand, out of its place
-  estimate_.clip.samples.col(10).array() += 3;
+  estimate_.motion.col(6).array() += 2;  // the hand, out of its place
+  estimate_.motion.col(10).array() += 3;
   touched_.col(6).setConstant(true);
 
   EXPECT_DOUBLE_EQ(figure("fd"), std::sqrt((4.0 + 9.0) / 12));
@@ -60,18 +60,18 @@ TEST_F(CellFigures, LeaveOutExcludedJoints) {
 
 TEST_F(CellFigures, AJointWhoseParentIsLeftOutHasNoBone) {
   take_.excluded = {"arm"};
-  estimate_.clip.samples.col(6).array() += 2;
+  estimate_.motion.col(6).array() += 2;
 
   EXPECT_DOUBLE_EQ(figure("bone_length"), 0);
 }
 
 TEST_F(CellFigures, SayHowMuchIsMissing) {
-  estimate_.clip.samples.block(0, 0, 2, 3).setConstant(std::nan(""));
+  estimate_.motion.block(0, 0, 2, 3).setConstant(std::nan(""));
 
   EXPECT_DOUBLE_EQ(figure("missing"), 6.0 / 36);
   EXPECT_DOUBLE_EQ(figure("fd"), 0);
 
-  estimate_.clip.samples.setConstant(std::nan(""));
+  estimate_.motion.setConstant(std::nan(""));
   EXPECT_DOUBLE_EQ(figure("missing"), 1);
   EXPECT_DOUBLE_EQ(figure("fd"), -1);
 }

@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 
 #include "moclean/core/error.hpp"
-#include "moclean/io/read_write.hpp"
+#include "moclean/formats/read_write.hpp"
 
-#include "io/temporary_folder.hpp"
+#include "formats/temporary_folder.hpp"
 #include "support/synthetic_walk.hpp"
 
 namespace moclean::test {
@@ -123,7 +123,7 @@ TEST_F(GridFile, ErrorsNameLineKeyAndWhatWasExpected) {
 }
 
 TEST_F(GridFile, TakesAreReadAndCut) {
-  write_clip(folder_.path() / "walk.npy", synthetic_walk(20));
+  write_recording(folder_.path() / "walk.npy", synthetic_walk(20));
   const GridConfig config = read(whole);
 
   const GridTakes found = read_takes(config);
@@ -135,10 +135,10 @@ TEST_F(GridFile, TakesAreReadAndCut) {
 }
 
 TEST_F(GridFile, TakesAreThinnedAfterTheyAreCut) {
-  write_clip(folder_.path() / "walk.npy", synthetic_walk(20));
+  write_recording(folder_.path() / "walk.npy", synthetic_walk(20));
 
   const GridConfig config = read(with("rate = 60", "rate = 60\nthin = 4"));
-  const Clip thinned = read_takes(config).takes.at(0).clip;
+  const Recording thinned = read_takes(config).takes.at(0).clip;
 
   const Matrix walk = synthetic_walk(20).samples;
   EXPECT_EQ(config.takes[0].thin, 4);
@@ -154,9 +154,9 @@ TEST_F(GridFile, TakesAreThinnedAfterTheyAreCut) {
 }
 
 TEST_F(GridFile, TakesThatCannotServeAreRefused) {
-  Clip walk = synthetic_walk(20);
+  Recording walk = synthetic_walk(20);
   walk.samples(3, 5) = std::nan("");
-  write_clip(folder_.path() / "walk.npy", walk);
+  write_recording(folder_.path() / "walk.npy", walk);
 
   EXPECT_THAT([&] { read_takes(read(whole)); },
               ThrowsMessage<FileError>(HasSubstr("walk.npy: frame 3, column joint1.z is nan")));

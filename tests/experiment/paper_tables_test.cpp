@@ -63,14 +63,14 @@ TEST(PaperTables, OfATinyTakeAreThoseOfTheSteps) {
 
   const auto results = run_cells(paper.experiment, paper.cells, {.backend = &backend});
 
-  const Clip noisy = corrupt(take.clip, parse_noise("gaussian-frames:frames=20"), 1).clip;
-  const Clip tsvd =
-      ChainDenoiser(parse_chain("tsvd:rank=10"), &backend).denoise({&noisy, 1})[0].clip;
+  const Recording noisy = corrupt(take.clip, parse_noise("gaussian-frames:frames=20"), 1).clip;
+  const Matrix tsvd =
+      ChainDenoiser(parse_chain("tsvd:rank=10"), &backend).denoise({&noisy, 1})[0].motion;
   ASSERT_EQ(results.size(), 5U);
-  const auto fd = [&](const Clip& clip) {
-    return (clip.samples - take.clip.samples).norm() / std::sqrt(60.0 * 30);
+  const auto fd = [&](const Matrix& motion) {
+    return (motion - take.clip.samples).norm() / std::sqrt(60.0 * 30);
   };
-  EXPECT_NEAR(results[0].figure("fd"), fd(noisy), 1e-12);
+  EXPECT_NEAR(results[0].figure("fd"), fd(noisy.samples), 1e-12);
   EXPECT_NEAR(results[2].figure("fd"), fd(tsvd), 1e-12);
   EXPECT_LT(results[1].figure("fd"), results[0].figure("fd"));
 }

@@ -6,9 +6,9 @@
 #include <gmock/gmock.h>
 
 #include "moclean/core/error.hpp"
-#include "moclean/io/file.hpp"
+#include "moclean/formats/file.hpp"
 
-#include "io/temporary_folder.hpp"
+#include "formats/temporary_folder.hpp"
 
 namespace moclean::test {
 namespace {

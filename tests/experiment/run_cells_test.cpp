@@ -9,7 +9,7 @@
 #include "moclean/solve/reference/reference_backend.hpp"
 
 #include "experiment/small_experiment.hpp"
-#include "io/temporary_folder.hpp"
+#include "formats/temporary_folder.hpp"
 
 namespace moclean::test {
 namespace {
@@ -47,12 +47,12 @@ TEST_F(RunCells, GiveWhatTheStepsGiveByHand) {
 
   ASSERT_EQ(results.size(), 2U * 2 * 4 * 2);
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    const Clip& truth = experiment_.takes[cells[i].take].clip;
+    const Recording& truth = experiment_.takes[cells[i].take].clip;
     if (cells[i].noise != 0 || cells[i].method != 2) continue;  // slra
     const Corrupted noisy = corrupt(truth, experiment_.noises[0].noise, cells[i].noise_seed);
     const Denoised clean =
         ChainDenoiser(parse_chain("slra:segments=2"), &backend_).denoise({&noisy.clip, 1}).front();
-    EXPECT_EQ(results[i].figure("fd"), frobenius_distance(truth.samples, clean.clip.samples));
+    EXPECT_EQ(results[i].figure("fd"), frobenius_distance(truth.samples, clean.motion));
     EXPECT_LT(results[i].figure("fd"), frobenius_distance(truth.samples, noisy.clip.samples));
     EXPECT_GT(results[i].figure("recall"), 0.9);
     EXPECT_EQ(results[i].figure("missing"), 0);

@@ -8,7 +8,7 @@ namespace moclean::test {
 
 /// A take of the first ten joints of a synthetic walk.
 inline ExperimentTake small_take(const std::string& name, Index frames, std::uint64_t seed = 1) {
-  Clip walk = synthetic_walk(frames, seed);
+  Recording walk = synthetic_walk(frames, seed);
   walk.samples.conservativeResize(frames, 30);
   walk.columns.resize(30);
   return {.name = name, .label = name, .file = name + ".npy", .clip = walk, .excluded = {}};

@@ -23,16 +23,17 @@ class Figures : public testing::Test {
     return found;
   }
 
-  Clip clip(const Matrix& samples) const {
+  Recording clip(const Matrix& samples) const {
     return {.samples = samples,
             .columns = {"a.x", "a.y", "a.z", "b.x", "b.y", "b.z"},
             .frame_rate = 30,
             .unit = ""};
   }
 
-  const Clip truth_ = clip(Matrix{{0, 0, 0, 0, 0, 1}, {0, 1, 0, 0, 1, 1}, {0, 3, 0, 0, 3, 1}});
-  const Clip estimate_ = clip(Matrix{{0, 0, 0, 0, 0, 3}, {0, 1, 0, 0, 1, 1}, {1, 3, 0, 0, 3, 1}});
-  const Clip outliers_ = clip(Matrix{{0, 0, 0, 0, 0, 2}, {0, 0, 5, 0, 0, 0}, {0, 0, 0, 0, 0, 0}});
+  const Recording truth_ = clip(Matrix{{0, 0, 0, 0, 0, 1}, {0, 1, 0, 0, 1, 1}, {0, 3, 0, 0, 3, 1}});
+  const Recording estimate_ =
+      clip(Matrix{{0, 0, 0, 0, 0, 3}, {0, 1, 0, 0, 1, 1}, {1, 3, 0, 0, 3, 1}});
+  const Matrix outliers_{{0, 0, 0, 0, 0, 2}, {0, 0, 5, 0, 0, 0}, {0, 0, 0, 0, 0, 0}};
   const Mask touched_ = truth_.samples.array() != estimate_.samples.array();
 };
 
@@ -69,7 +70,7 @@ TEST_F(Figures, AreThoseOfTheMetrics) {
 }
 
 TEST_F(Figures, LeaveOutWhatTheyLackInputsFor) {
-  Clip without_rate = truth_;
+  Recording without_rate = truth_;
   without_rate.frame_rate = 0;
 
   const auto found = values({.truth = without_rate, .estimate = estimate_});

@@ -17,7 +17,7 @@ using testing::ThrowsMessage;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // Two frames of one joint and one single channel.
-Clip clip_of(const Matrix& samples) {
+Recording clip_of(const Matrix& samples) {
   return {.samples = samples, .columns = {"hip.x", "hip.y", "hip.z", "force"}, .unit = "cm"};
 }
 
@@ -80,7 +80,7 @@ TEST(Compare, LeavesNaNOutOfEveryFigureAndCountsIt) {
 }
 
 TEST(Compare, RefusesDifferentShapes) {
-  Clip longer = clip_of(Matrix::Zero(3, 4));
+  Recording longer = clip_of(Matrix::Zero(3, 4));
 
   EXPECT_THAT([&] { compare(clip_of(truth()), longer); },
               ThrowsMessage<ShapeError>("cannot compare 2 frames x 4 columns with 3 frames x 4 "
@@ -88,7 +88,7 @@ TEST(Compare, RefusesDifferentShapes) {
 }
 
 TEST(Compare, RefusesClipsWithNothingInCommon) {
-  const Clip unseen = clip_of(Matrix::Constant(2, 4, nan));
+  const Recording unseen = clip_of(Matrix::Constant(2, 4, nan));
 
   EXPECT_THAT([&] { compare(clip_of(truth()), unseen); },
               ThrowsMessage<ShapeError>("nothing to compare: no entry is observed in both clips"));

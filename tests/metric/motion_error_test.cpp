@@ -17,32 +17,32 @@ using testing::ThrowsMessage;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // A joint `a` and a joint `b` that hangs on it.
-Clip two_joints(const Matrix& samples) {
+Recording two_joints(const Matrix& samples) {
   return {.samples = samples, .columns = {"a.x", "a.y", "a.z", "b.x", "b.y", "b.z"}, .unit = ""};
 }
 
-Clip one_channel(const Matrix& samples) {
+Recording one_channel(const Matrix& samples) {
   return {.samples = samples, .columns = {"force"}, .unit = ""};
 }
 
 TEST(PositionError, IsTheMeanDistanceOfAJoint) {
-  const Clip truth = two_joints(Matrix{{0, 0, 0, 1, 1, 1}, {0, 0, 0, 1, 1, 1}});
-  const Clip estimate = two_joints(Matrix{{3, 4, 0, 1, 1, 1}, {0, 0, 0, 3, 2, 3}});
+  const Recording truth = two_joints(Matrix{{0, 0, 0, 1, 1, 1}, {0, 0, 0, 1, 1, 1}});
+  const Recording estimate = two_joints(Matrix{{3, 4, 0, 1, 1, 1}, {0, 0, 0, 3, 2, 3}});
 
   EXPECT_NEAR(position_error(truth, estimate), (5 + 0 + 0 + 3) / 4.0, test::tolerance::by_hand(8));
 }
 
 TEST(PositionError, LeavesOutAJointThatIsPartlyUnseen) {
-  const Clip truth = two_joints(Matrix{{0, 0, 0, 1, 1, 1}});
-  const Clip estimate = two_joints(Matrix{{nan, 4, 0, 3, 2, 3}});
+  const Recording truth = two_joints(Matrix{{0, 0, 0, 1, 1, 1}});
+  const Recording estimate = two_joints(Matrix{{nan, 4, 0, 3, 2, 3}});
 
   EXPECT_NEAR(position_error(truth, estimate), 3, test::tolerance::by_hand(3));
   EXPECT_TRUE(std::isnan(position_error(truth, two_joints(Matrix::Constant(1, 6, nan)))));
 }
 
 TEST(WorstDisplacement, IsTheLargestDistanceInAllThreeCoordinates) {
-  const Clip truth = two_joints(Matrix{{0, 0, 0, 1, 1, 1}, {0, 0, 0, 1, 1, 1}});
-  const Clip estimate = two_joints(Matrix{{3, 4, 0, 1, 1, 5.5}, {nan, 40, 0, 3, 2, 3}});
+  const Recording truth = two_joints(Matrix{{0, 0, 0, 1, 1, 1}, {0, 0, 0, 1, 1, 1}});
+  const Recording estimate = two_joints(Matrix{{3, 4, 0, 1, 1, 5.5}, {nan, 40, 0, 3, 2, 3}});
 
   EXPECT_NEAR(worst_displacement(truth, estimate), 5, test::tolerance::by_hand(5));
   EXPECT_EQ(worst_displacement(truth, truth), 0);
@@ -50,14 +50,14 @@ TEST(WorstDisplacement, IsTheLargestDistanceInAllThreeCoordinates) {
 }
 
 TEST(LiPositionError, IsTheNormOverTheNumberOfEntries) {
-  const Clip truth = two_joints(Matrix{{0, 0, 0, 1, 1, 1}, {0, 0, 0, 1, 1, 1}});
-  const Clip estimate = two_joints(Matrix{{3, 4, 0, 1, 1, 1}, {0, 0, 0, 13, 1, 1}});
+  const Recording truth = two_joints(Matrix{{0, 0, 0, 1, 1, 1}, {0, 0, 0, 1, 1, 1}});
+  const Recording estimate = two_joints(Matrix{{3, 4, 0, 1, 1, 1}, {0, 0, 0, 13, 1, 1}});
 
   EXPECT_NEAR(li_position_error(truth, estimate), 13 / 12.0, test::tolerance::by_hand(2));
 }
 
 TEST(LiPositionError, LeavesNaNOutOfSumAndSize) {
-  const Clip truth = two_joints(Matrix{{0, 0, 0, 1, nan, 1}});
+  const Recording truth = two_joints(Matrix{{0, 0, 0, 1, nan, 1}});
 
   EXPECT_NEAR(li_position_error(truth, two_joints(Matrix{{3, 4, 0, 1, 1, 1}})), 5 / 5.0,
               test::tolerance::by_hand(2));
@@ -65,8 +65,9 @@ TEST(LiPositionError, LeavesNaNOutOfSumAndSize) {
 
 TEST(BoneLengthError, IsTheMeanDeviationFromTheLengthOfTheTruth) {
   const std::vector<int> parents = {-1, 0};
-  const Clip truth = two_joints(Matrix{{0, 0, 0, 0, 0, 1}, {5, 5, 5, 8, 5, 5}});     // lengths 1, 3
-  const Clip estimate = two_joints(Matrix{{1, 1, 1, 4, 5, 1}, {0, 0, 0, 0, 1, 0}});  // 5, 1
+  const Recording truth =
+      two_joints(Matrix{{0, 0, 0, 0, 0, 1}, {5, 5, 5, 8, 5, 5}});  // lengths 1, 3
+  const Recording estimate = two_joints(Matrix{{1, 1, 1, 4, 5, 1}, {0, 0, 0, 0, 1, 0}});  // 5, 1
 
   EXPECT_NEAR(bone_length_error(truth, estimate, parents), (3 + 1) / 2.0,
               test::tolerance::by_hand(5));
@@ -74,21 +75,21 @@ TEST(BoneLengthError, IsTheMeanDeviationFromTheLengthOfTheTruth) {
 
 TEST(BoneLengthError, IsZeroForAMovedCopyOfARigidBody) {
   const std::vector<int> parents = {-1, 0};
-  const Clip truth = two_joints(Matrix{{0, 0, 0, 0, 0, 2}, {1, 0, 0, 3, 0, 0}});
+  const Recording truth = two_joints(Matrix{{0, 0, 0, 0, 0, 2}, {1, 0, 0, 3, 0, 0}});
 
   EXPECT_EQ(bone_length_error(truth, two_joints(truth.samples.array() + 4), parents), 0);
 }
 
 TEST(BoneLengthError, LeavesOutFramesWithAnUnseenEnd) {
   const std::vector<int> parents = {-1, 0};
-  const Clip truth = two_joints(Matrix{{0, 0, 0, 0, 0, 1}, {0, 0, 0, 0, 0, nan}});
-  const Clip estimate = two_joints(Matrix{{nan, 0, 0, 0, 0, 1}, {0, 0, 0, 0, 0, 4}});
+  const Recording truth = two_joints(Matrix{{0, 0, 0, 0, 0, 1}, {0, 0, 0, 0, 0, nan}});
+  const Recording estimate = two_joints(Matrix{{nan, 0, 0, 0, 0, 1}, {0, 0, 0, 0, 0, 4}});
 
   EXPECT_NEAR(bone_length_error(truth, estimate, parents), 3, test::tolerance::by_hand(4));
 }
 
 TEST(BoneLengthError, RefusesParentsOfAnotherSkeleton) {
-  const Clip clip = two_joints(Matrix::Zero(1, 6));
+  const Recording clip = two_joints(Matrix::Zero(1, 6));
 
   EXPECT_THAT([&] { bone_length_error(clip, clip, std::vector<int>{-1}); },
               ThrowsMessage<ShapeError>("1 parents do not fit 2 joints"));
@@ -109,8 +110,8 @@ TEST(SmoothnessError, IsZeroAtRestAndLeavesNaNOut) {
 }
 
 TEST(AccelerationError, IsTheMeanNormOfTheSecondDifferenceOfTheError) {
-  const Clip truth = two_joints(Matrix::Zero(4, 6));
-  Clip estimate = two_joints(Matrix::Zero(4, 6));
+  const Recording truth = two_joints(Matrix::Zero(4, 6));
+  Recording estimate = two_joints(Matrix::Zero(4, 6));
   estimate.samples(1, 0) = 3;  // second differences of a.x at frames 1 and 2: -6, 3
   estimate.samples(1, 1) = 4;  // of a.y: -8, 4
 
@@ -119,8 +120,8 @@ TEST(AccelerationError, IsTheMeanNormOfTheSecondDifferenceOfTheError) {
 }
 
 TEST(AccelerationError, DoesNotSeeAConstantVelocity) {
-  const Clip truth = one_channel(Matrix{{4}, {1}, {-5}, {2}});
-  const Clip estimate = one_channel(Matrix{{4 + 1}, {1 + 3}, {-5 + 5}, {2 + 7}});
+  const Recording truth = one_channel(Matrix{{4}, {1}, {-5}, {2}});
+  const Recording estimate = one_channel(Matrix{{4 + 1}, {1 + 3}, {-5 + 5}, {2 + 7}});
 
   EXPECT_EQ(acceleration_error(truth, estimate), 0);
   EXPECT_TRUE(std::isnan(
@@ -128,7 +129,7 @@ TEST(AccelerationError, DoesNotSeeAConstantVelocity) {
 }
 
 TEST(MotionErrors, RefuseDifferentShapes) {
-  const Clip a = two_joints(Matrix::Zero(3, 6)), b = two_joints(Matrix::Zero(4, 6));
+  const Recording a = two_joints(Matrix::Zero(3, 6)), b = two_joints(Matrix::Zero(4, 6));
 
   EXPECT_THROW(position_error(a, b), ShapeError);
   EXPECT_THROW(worst_displacement(a, b), ShapeError);

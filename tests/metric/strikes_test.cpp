@@ -12,7 +12,7 @@
 namespace moclean {
 namespace {
 
-Clip joints_of(const Matrix& samples, double rate) {
+Recording joints_of(const Matrix& samples, double rate) {
   return {.samples = samples,
           .columns = default_column_names(samples.cols()),
           .frame_rate = rate,
@@ -20,7 +20,8 @@ Clip joints_of(const Matrix& samples, double rate) {
 }
 
 // One joint at rest but for spikes (3, 4, 0) of the given sizes: second differences -2, 1, 1 times.
-Clip spikes(Index frames, const std::vector<std::pair<Index, double>>& sizes, double rate = 10) {
+Recording spikes(Index frames, const std::vector<std::pair<Index, double>>& sizes,
+                 double rate = 10) {
   Matrix samples = Matrix::Zero(frames, 3);
   for (const auto& [frame, size] : sizes) {
     samples(frame, 0) = 3 * size;
@@ -30,22 +31,22 @@ Clip spikes(Index frames, const std::vector<std::pair<Index, double>>& sizes, do
 }
 
 TEST(StrikesKept, IsOneOfAnUnchangedTake) {
-  const Clip take = joints_of(test::random_matrix(60, 9, 1), 30);
+  const Recording take = joints_of(test::random_matrix(60, 9, 1), 30);
 
   EXPECT_EQ(strikes_kept(take, take), 1);
 }
 
 TEST(StrikesKept, IsTheMeanShareOfThePeaks) {
   // At 10 Hz a neighbour is 0.1 s away, a peak of its own: 5 10 5 and 10 20 10.
-  const Clip truth = spikes(9, {{2, 1}, {6, 2}}), estimate = spikes(9, {{2, 0.5}, {6, 2}});
+  const Recording truth = spikes(9, {{2, 1}, {6, 2}}), estimate = spikes(9, {{2, 0.5}, {6, 2}});
 
   EXPECT_NEAR(strikes_kept(truth, estimate), (3 * 0.5 + 3 * 1) / 6, test::tolerance::by_hand(1));
 }
 
 TEST(StrikesKept, TakesOnePeakOfAJointWithinATenthOfASecond) {
   // At 20 Hz the neighbours of a peak are left out; what they keep does not matter.
-  const Clip truth = spikes(12, {{2, 1}, {8, 2}}, 20);
-  Clip estimate = spikes(12, {{2, 1}, {8, 1}}, 20);
+  const Recording truth = spikes(12, {{2, 1}, {8, 2}}, 20);
+  Recording estimate = spikes(12, {{2, 1}, {8, 1}}, 20);
 
   EXPECT_NEAR(strikes_kept(truth, estimate), (1 + 0.5) / 2, test::tolerance::by_hand(1));
 
@@ -69,16 +70,16 @@ TEST(StrikesKept, LooksAtTheTenHardestOnly) {
 }
 
 TEST(StrikesKept, LeavesOutWhatIsMissing) {
-  const Clip truth = spikes(12, {{2, 1}, {8, 2}}, 20);
-  Clip estimate = spikes(12, {{2, 0.25}, {8, 2}}, 20);
+  const Recording truth = spikes(12, {{2, 1}, {8, 2}}, 20);
+  Recording estimate = spikes(12, {{2, 0.25}, {8, 2}}, 20);
   estimate.samples(8, 2) = std::nan("");
 
   EXPECT_NEAR(strikes_kept(truth, estimate), 0.25, test::tolerance::by_hand(1));
 }
 
 TEST(StrikesKept, NeedsARateAndAMotion) {
-  const Clip still = joints_of(Matrix::Zero(8, 3), 30);
-  Clip without_rate = spikes(8, {{3, 1}});
+  const Recording still = joints_of(Matrix::Zero(8, 3), 30);
+  Recording without_rate = spikes(8, {{3, 1}});
   without_rate.frame_rate = 0;
 
   EXPECT_TRUE(std::isnan(strikes_kept(still, still)));

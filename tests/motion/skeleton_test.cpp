@@ -145,35 +145,5 @@ TEST(ForwardKinematics, RejectsAParentThatComesLater) {
   EXPECT_THROW(forward_kinematics(skeleton, Matrix(1, 0)), ShapeError);
 }
 
-TEST(JointParents, AreTheBonesOfTheSameNames) {
-  Skeleton skeleton;
-  skeleton.bones = {{.name = "hip"}, {.name = "knee", .parent = 0}, {.name = "head", .parent = 0}};
-  Clip clip;
-  for (const char* column : {"hip.x", "hip.y", "hip.z", "knee.x", "knee.y", "knee.z"})
-    clip.columns.emplace_back(column);
-  EXPECT_THAT(joint_parents(skeleton, clip), testing::IsEmpty());  // no head
-
-  for (const char* column : {"head.x", "head.y", "head.z"}) clip.columns.emplace_back(column);
-  EXPECT_THAT(joint_parents(skeleton, clip), testing::ElementsAre(-1, 0, 0));
-
-  skeleton.bones[2].name = "neck";
-  EXPECT_THAT(joint_parents(skeleton, clip), testing::IsEmpty());
-}
-
-TEST(JointPositions, NamesThreeColumnsPerBone) {
-  SkeletonMotion motion;
-  motion.skeleton.bones = {{.name = "hip", .channels = {translate_y}}};
-  motion.channels = row({4});
-  motion.frame_rate = 30;
-  motion.unit = "cm";
-
-  const Clip clip = joint_positions(motion);
-
-  EXPECT_EQ(clip.samples, row({0, 4, 0}));
-  EXPECT_THAT(clip.columns, testing::ElementsAre("hip.x", "hip.y", "hip.z"));
-  EXPECT_EQ(clip.frame_rate, 30);
-  EXPECT_EQ(clip.unit, "cm");
-}
-
 }  // namespace
 }  // namespace moclean

@@ -17,7 +17,7 @@ using testing::ThrowsMessage;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-Clip still(Index frames, Index columns, double rate = 120, std::string unit = "") {
+Recording still(Index frames, Index columns, double rate = 120, std::string unit = "") {
   return {.samples = Matrix::Zero(frames, columns),
           .columns = default_column_names(columns),
           .frame_rate = rate,
@@ -25,13 +25,13 @@ Clip still(Index frames, Index columns, double rate = 120, std::string unit = ""
 }
 
 template <class Noise>
-Mask spoil(const Noise& noise, Clip& clip, std::uint64_t seed = 1) {
+Mask spoil(const Noise& noise, Recording& clip, std::uint64_t seed = 1) {
   Random random(seed);
   return add_noise(noise, random, clip);
 }
 
 template <class Noise>
-void expect_refused(const Noise& noise, Clip clip, const std::string& message) {
+void expect_refused(const Noise& noise, Recording clip, const std::string& message) {
   EXPECT_THAT([&] { spoil(noise, clip); }, ThrowsMessage<ArgumentError>(message));
 }
 
@@ -42,7 +42,7 @@ double deviation(const ConstMatrixRef& x) {
 TEST(Jitter, HasTheDeviationAskedForFromTheFirstFrameOn) {
   constexpr Index columns = 6000;
   for (const double cutoff : {0.5, 6.0, 55.0}) {
-    Clip clip = still(20, columns);
+    Recording clip = still(20, columns);
 
     spoil(Jitter{.sd = 3.0, .cutoff = cutoff}, clip);
 
@@ -58,7 +58,7 @@ TEST(Jitter, HasTheDeviationAskedForFromTheFirstFrameOn) {
 // hand.
 TEST(Jitter, HasTheCorrelationOfTheLowPass) {
   constexpr Index columns = 6000;
-  Clip clip = still(8, columns, 40);
+  Recording clip = still(8, columns, 40);
 
   spoil(Jitter{.sd = 1.0, .cutoff = 10.0}, clip);
 
@@ -73,7 +73,7 @@ TEST(Jitter, HasTheCorrelationOfTheLowPass) {
 
 TEST(Jitter, LeavesColumnsIndependent) {
   constexpr Index frames = 20000;
-  Clip clip = still(frames, 2, 40);
+  Recording clip = still(frames, 2, 40);
 
   spoil(Jitter{.sd = 1.0, .cutoff = 10.0}, clip);
 
@@ -84,7 +84,7 @@ TEST(Jitter, LeavesColumnsIndependent) {
 
 // Printed once by this code and kept: a platform on which they differ breaks reproducibility.
 TEST(Jitter, IsTheSameBitsEverywhere) {
-  Clip clip = still(2, 2, 60);
+  Recording clip = still(2, 2, 60);
 
   spoil(Jitter{.sd = 0.5, .cutoff = 3.0}, clip, 2026);
 
@@ -109,9 +109,9 @@ TEST(Jitter, NeedsARateAndACutoffBelowHalfOfIt) {
 }
 
 TEST(Round, TakesTheNearestMultiple) {
-  Clip clip{.samples = Matrix{{0.24, 0.25, -0.74, -0.75, nan, -0.1, 7}},
-            .columns = default_column_names(7),
-            .unit = ""};
+  Recording clip{.samples = Matrix{{0.24, 0.25, -0.74, -0.75, nan, -0.1, 7}},
+                 .columns = default_column_names(7),
+                 .unit = ""};
 
   const Mask touched = spoil(Round{.step = 0.5}, clip);
 
@@ -132,7 +132,7 @@ TEST(White, HasTheDeviationInMillimetresWhateverTheUnit) {
   };
   for (const Unit& unit :
        {Unit{"mm", 1}, Unit{"cm", 10}, Unit{"m", 1000}, Unit{"ASF units", 508 / 9.0}}) {
-    Clip clip = still(100, 60, 0, unit.name);
+    Recording clip = still(100, 60, 0, unit.name);
 
     const Mask touched = spoil(White{.sd_mm = 3.0}, clip);
 
@@ -144,7 +144,7 @@ TEST(White, HasTheDeviationInMillimetresWhateverTheUnit) {
 }
 
 TEST(White, TakesTheUnitThatIsGiven) {
-  Clip given = still(10, 3, 0, "mm"), known = still(10, 3, 0, "cm");
+  Recording given = still(10, 3, 0, "mm"), known = still(10, 3, 0, "cm");
 
   spoil(White{.sd_mm = 2.0, .unit_mm = 10.0}, given);
   spoil(White{.sd_mm = 2.0}, known);
@@ -177,7 +177,7 @@ using Backgrounds = testing::Types<SlowJitter, MillimetreOfNoise>;
 TYPED_TEST_SUITE(Background, Backgrounds);
 
 TYPED_TEST(Background, LeavesMissingSamplesAloneAndDrawsForThem) {
-  Clip gappy = still(6, 3), whole = still(6, 3);
+  Recording gappy = still(6, 3), whole = still(6, 3);
   gappy.samples.col(0).setConstant(nan);
 
   const Mask touched = spoil(TypeParam(), gappy);

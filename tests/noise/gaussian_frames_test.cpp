@@ -18,9 +18,9 @@ using testing::ThrowsMessage;
 
 // The noise alone: what is added to zeros.
 Matrix noise_alone(const GaussianFrames& noise, Index frames, Index columns, std::uint64_t seed) {
-  Clip clip{.samples = Matrix::Zero(frames, columns),
-            .columns = default_column_names(columns),
-            .unit = ""};
+  Recording clip{.samples = Matrix::Zero(frames, columns),
+                 .columns = default_column_names(columns),
+                 .unit = ""};
   Random random(seed);
   add_noise(noise, random, clip);
   return clip.samples;
@@ -81,7 +81,7 @@ TEST(GaussianFrames, TreatsColumnsIndependently) {
 TEST(GaussianFrames, DoesNotDependOnTheSamples) {
   Matrix clean = test::random_matrix(30, 9, 3);
   clean(4, 5) = std::numeric_limits<double>::quiet_NaN();
-  Clip noisy{.samples = clean, .columns = default_column_names(9), .unit = ""};
+  Recording noisy{.samples = clean, .columns = default_column_names(9), .unit = ""};
   Random random(5);
 
   add_noise(GaussianFrames{.frames = 30}, random, noisy);

@@ -19,7 +19,7 @@ using testing::ThrowsMessage;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 template <class Noise>
-Mask spoil(const Noise& noise, Clip& clip, std::uint64_t seed = 1) {
+Mask spoil(const Noise& noise, Recording& clip, std::uint64_t seed = 1) {
   Random random(seed);
   return add_noise(noise, random, clip);
 }
@@ -35,14 +35,14 @@ TEST(DeviationOf, IsTheMotionAboutItsMeanOverTheRatio) {
 }
 
 TEST(DeviationOf, DoesNotDependOnTheOrigin) {
-  const Clip walk = test::synthetic_walk(100);
+  const Recording walk = test::synthetic_walk(100);
 
   EXPECT_NEAR(deviation_of(10, walk.samples), deviation_of(10, walk.samples.array() + 64),
               test::tolerance::sum_of_products(100, 1));
 }
 
 TEST(Gaussian, TouchesEveryObservedEntry) {
-  Clip walk = test::synthetic_walk(40);
+  Recording walk = test::synthetic_walk(40);
   walk.samples(3, 7) = nan;
   const Matrix clean = walk.samples;
 
@@ -55,7 +55,7 @@ TEST(Gaussian, TouchesEveryObservedEntry) {
 }
 
 TEST(Gaussian, HasTheDeviationAskedFor) {
-  Clip walk = test::synthetic_walk(2000);
+  Recording walk = test::synthetic_walk(2000);
   const Matrix clean = walk.samples;
 
   spoil(Gaussian{.snr = 20}, walk);
@@ -67,7 +67,7 @@ TEST(Gaussian, HasTheDeviationAskedFor) {
 }
 
 TEST(Gaussian, NeedsExactlyOneOfItsParameters) {
-  Clip walk = test::synthetic_walk(4);
+  Recording walk = test::synthetic_walk(4);
 
   for (const Gaussian& noise : {Gaussian{}, Gaussian{.sd = 1.0, .snr = 1.0}})
     EXPECT_THAT(
@@ -78,7 +78,7 @@ TEST(Gaussian, NeedsExactlyOneOfItsParameters) {
 }
 
 TEST(Dropout, DropsThatShareOfWholeJointsInEveryFrame) {
-  Clip walk = test::synthetic_walk(50);
+  Recording walk = test::synthetic_walk(50);
   const Matrix clean = walk.samples;
 
   const Mask touched =
@@ -95,7 +95,7 @@ TEST(Dropout, DropsThatShareOfWholeJointsInEveryFrame) {
 }
 
 TEST(Dropout, AddsABackgroundThatCountsAsUntouched) {
-  Clip walk = test::synthetic_walk(50);
+  Recording walk = test::synthetic_walk(50);
   const Matrix clean = walk.samples;
 
   const Mask touched = spoil(Dropout{.fraction = 0.1, .fill = Dropout::Fill::nan}, walk);
@@ -106,7 +106,7 @@ TEST(Dropout, AddsABackgroundThatCountsAsUntouched) {
 }
 
 TEST(Dropout, LeavesWhatWasMissingMissingAndUntouched) {
-  Clip walk = test::synthetic_walk(5);
+  Recording walk = test::synthetic_walk(5);
   walk.samples.col(0).setConstant(nan);
 
   const Mask touched = spoil(Dropout{.fraction = 1}, walk);
@@ -118,7 +118,7 @@ TEST(Dropout, LeavesWhatWasMissingMissingAndUntouched) {
 }
 
 TEST(Dropout, RefusesParametersOutOfRange) {
-  Clip walk = test::synthetic_walk(4);
+  Recording walk = test::synthetic_walk(4);
 
   EXPECT_THROW(spoil(Dropout{.fraction = 1.1}, walk), ArgumentError);
   EXPECT_THROW(spoil(Dropout{.snr = 1e9}, walk), ArgumentError);

@@ -17,11 +17,11 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::ThrowsMessage;
 
-Clip clip_of(const std::vector<std::string>& names, Index frames = 1, double rate = 120) {
-  Clip clip{.samples = test::random_matrix(frames, 3 * static_cast<Index>(names.size()), 1),
-            .columns = {},
-            .frame_rate = rate,
-            .unit = ""};
+Recording clip_of(const std::vector<std::string>& names, Index frames = 1, double rate = 120) {
+  Recording clip{.samples = test::random_matrix(frames, 3 * static_cast<Index>(names.size()), 1),
+                 .columns = {},
+                 .frame_rate = rate,
+                 .unit = ""};
   for (const std::string& name : names)
     for (const char* axis : {".x", ".y", ".z"}) clip.columns.push_back(name + axis);
   return clip;
@@ -39,7 +39,7 @@ std::vector<std::string> limbs_of(const std::vector<std::string>& names) {
 }
 
 template <class Noise>
-Mask spoil(const Noise& noise, Clip& clip, std::uint64_t seed = 1) {
+Mask spoil(const Noise& noise, Recording& clip, std::uint64_t seed = 1) {
   Random random(seed);
   return add_noise(noise, random, clip);
 }
@@ -67,7 +67,7 @@ TEST(LimbPairs, AreNotFoundWhereNamesHaveNoSides) {
 }
 
 TEST(LimbSwap, ExchangesAWholeLimbForARun) {
-  Clip clip = clip_of(body, 50);
+  Recording clip = clip_of(body, 50);
   const Matrix clean = clip.samples;
 
   const Mask touched = spoil(LimbSwap{.runs = {.count = 1, .length = 20}}, clip);
@@ -85,7 +85,7 @@ TEST(LimbSwap, ExchangesAWholeLimbForARun) {
 }
 
 TEST(LimbSwap, CountsSharesByPairsOfLimbs) {
-  Clip clip = clip_of(body, 100);
+  Recording clip = clip_of(body, 100);
 
   const Mask touched = spoil(LimbSwap{.runs = {.fraction = 0.1, .length = 20}}, clip);
 
@@ -93,7 +93,7 @@ TEST(LimbSwap, CountsSharesByPairsOfLimbs) {
 }
 
 TEST(LimbSwap, LeavesAnEntryThatLacksItsLike) {
-  Clip clip = clip_of({"lknee", "rknee"}, 4);
+  Recording clip = clip_of({"lknee", "rknee"}, 4);
   clip.samples(1, 0) = std::numeric_limits<double>::quiet_NaN();
   const Matrix clean = clip.samples;
 
@@ -106,7 +106,7 @@ TEST(LimbSwap, LeavesAnEntryThatLacksItsLike) {
 }
 
 TEST(LimbSwap, RefusesARecordingWithoutSides) {
-  Clip clip = clip_of({"head", "hips"}, 10);
+  Recording clip = clip_of({"head", "hips"}, 10);
 
   EXPECT_THAT([&] { spoil(LimbSwap{.runs = {.count = 1, .length = 5}}, clip); },
               ThrowsMessage<ArgumentError>(
@@ -116,7 +116,7 @@ TEST(LimbSwap, RefusesARecordingWithoutSides) {
 }
 
 TEST(InertialDrift, MovesTheWholeBodyAlikeFromRestOn) {
-  Clip clip = clip_of(body, 60);
+  Recording clip = clip_of(body, 60);
   const Matrix clean = clip.samples;
 
   const Mask touched = spoil(InertialDrift{.sd = 2.0}, clip);
@@ -136,7 +136,7 @@ TEST(InertialDrift, HasTheDeviationAskedForAtTheEnd) {
   constexpr int takes = 400;
   double middle = 0, end = 0;
   for (int seed = 0; seed < takes; ++seed) {
-    Clip clip = clip_of({"root"}, 2001, 1);
+    Recording clip = clip_of({"root"}, 2001, 1);
     const Matrix clean = clip.samples;
     spoil(InertialDrift{.sd = 5.0}, clip, static_cast<std::uint64_t>(seed));
     middle += (clip.samples - clean).row(1000).squaredNorm() / (3 * takes);
@@ -149,7 +149,7 @@ TEST(InertialDrift, HasTheDeviationAskedForAtTheEnd) {
 }
 
 TEST(InertialDrift, OfALimbMovesOneSideOnly) {
-  Clip clip = clip_of(body, 30);
+  Recording clip = clip_of(body, 30);
 
   const Mask touched = spoil(InertialDrift{.sd = 2.0, .of = InertialDrift::Of::limb}, clip, 3);
 
@@ -161,7 +161,7 @@ TEST(InertialDrift, OfALimbMovesOneSideOnly) {
 
 // Printed once by this code and kept: a platform on which they differ breaks reproducibility.
 TEST(InertialDrift, IsTheSameBitsEverywhere) {
-  Clip clip = clip_of({"root"}, 3, 60);
+  Recording clip = clip_of({"root"}, 3, 60);
   clip.samples.setZero();
 
   spoil(InertialDrift{.sd = 2.0}, clip, 2026);
@@ -173,7 +173,7 @@ TEST(InertialDrift, IsTheSameBitsEverywhere) {
 }
 
 TEST(InertialDrift, NeedsARateAndADeviation) {
-  Clip clip = clip_of(body, 10, 0), channel = clip_of(body, 10);
+  Recording clip = clip_of(body, 10, 0), channel = clip_of(body, 10);
   channel.columns.assign(30, "force");
 
   EXPECT_THAT(

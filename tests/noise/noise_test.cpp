@@ -107,7 +107,7 @@ TEST(ParseNoise, ReadsEveryModel) {
 }
 
 TEST(Corrupt, EveryModelRepeatsWithTheSeedAndKeepsToItsMask) {
-  Clip walk = test::synthetic_walk(100);
+  Recording walk = test::synthetic_walk(100);
   for (std::size_t c = 0; c < 3; ++c) {  // a limb in two
     walk.columns[3 + c].replace(0, 6, "lfoot");
     walk.columns[6 + c].replace(0, 6, "rfoot");
@@ -132,7 +132,7 @@ TEST(Corrupt, EveryModelRepeatsWithTheSeedAndKeepsToItsMask) {
 }
 
 TEST(Corrupt, MarksExactlyTheEntriesThatDiffer) {
-  const Clip walk = test::synthetic_walk(120);
+  const Recording walk = test::synthetic_walk(120);
 
   const Corrupted noisy = corrupt(walk, GaussianFrames{.frames = 40}, 1);
 
@@ -144,7 +144,7 @@ TEST(Corrupt, MarksExactlyTheEntriesThatDiffer) {
 }
 
 TEST(Corrupt, LeavesNaNAloneAndUntouched) {
-  Clip walk = test::synthetic_walk(10);
+  Recording walk = test::synthetic_walk(10);
   walk.samples.row(3).setConstant(std::numeric_limits<double>::quiet_NaN());
 
   const Corrupted noisy = corrupt(walk, GaussianFrames{.frames = 10}, 1);
@@ -155,10 +155,10 @@ TEST(Corrupt, LeavesNaNAloneAndUntouched) {
 }
 
 TEST(Corrupt, KeepsNamesRateAndUnit) {
-  Clip walk = test::synthetic_walk(5);
+  Recording walk = test::synthetic_walk(5);
   walk.unit = "mm";
 
-  const Clip noisy = corrupt(walk, GaussianFrames{.frames = 1}, 1).clip;
+  const Recording noisy = corrupt(walk, GaussianFrames{.frames = 1}, 1).clip;
 
   EXPECT_EQ(noisy.columns, walk.columns);
   EXPECT_EQ(noisy.frame_rate, 120);
@@ -166,7 +166,7 @@ TEST(Corrupt, KeepsNamesRateAndUnit) {
 }
 
 TEST(Corrupt, RepeatsWithTheSeedAndDiffersWithout) {
-  const Clip walk = test::synthetic_walk(50);
+  const Recording walk = test::synthetic_walk(50);
   const GaussianFrames noise{.frames = 10};
 
   const Matrix first = corrupt(walk, noise, 4).clip.samples;
@@ -188,7 +188,7 @@ TEST(NoiseChain, ReadsBackWhatToStringWrites) {
 }
 
 TEST(NoiseChain, AddsEachToWhatTheOneBeforeLeft) {
-  const Clip walk = test::synthetic_walk(40);
+  const Recording walk = test::synthetic_walk(40);
   const Gap gap{{.count = 3, .length = 20}};
 
   const Corrupted gaps = corrupt(walk, gap, 5);

@@ -19,7 +19,7 @@ using testing::ThrowsMessage;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 template <class Noise>
-Mask spoil(const Noise& noise, Clip& clip, std::uint64_t seed = 1) {
+Mask spoil(const Noise& noise, Recording& clip, std::uint64_t seed = 1) {
   Random random(seed);
   return add_noise(noise, random, clip);
 }
@@ -32,7 +32,7 @@ Index begin_of(const Mask& touched) {
 }
 
 TEST(Burst, DisplacesOneJointByOneVectorThroughoutARun) {
-  Clip walk = test::synthetic_walk(100);
+  Recording walk = test::synthetic_walk(100);
   const Matrix clean = walk.samples;
 
   const Mask touched = spoil(Burst{.runs = {.count = 1, .length = 20}, .sd = 5}, walk);
@@ -50,7 +50,7 @@ TEST(Burst, DisplacesOneJointByOneVectorThroughoutARun) {
 }
 
 TEST(Burst, HasTheDeviationAskedFor) {
-  Clip still{
+  Recording still{
       .samples = Matrix::Zero(3, 3 * 500), .columns = default_column_names(3 * 500), .unit = ""};
 
   spoil(Burst{.runs = {.count = 200, .length = 1}, .sd = 5}, still);
@@ -62,7 +62,7 @@ TEST(Burst, HasTheDeviationAskedFor) {
 }
 
 TEST(Drift, GrowsEvenlyToItsVector) {
-  Clip walk = test::synthetic_walk(100);
+  Recording walk = test::synthetic_walk(100);
   const Matrix clean = walk.samples;
 
   const Mask touched = spoil(Drift{.runs = {.count = 1, .length = 40}, .sd = 5}, walk);
@@ -77,7 +77,7 @@ TEST(Drift, GrowsEvenlyToItsVector) {
 }
 
 TEST(Ramp, RisesStaysAndFallsByThirds) {
-  Clip walk = test::synthetic_walk(100);
+  Recording walk = test::synthetic_walk(100);
   const Matrix clean = walk.samples;
 
   const Mask touched = spoil(Ramp{.runs = {.count = 1, .length = 8}, .sd = 5}, walk);
@@ -94,7 +94,7 @@ TEST(Ramp, RisesStaysAndFallsByThirds) {
 }
 
 TEST(Ramp, OfTwoFramesIsABurst) {
-  Clip ramp = test::synthetic_walk(50), burst = ramp;
+  Recording ramp = test::synthetic_walk(50), burst = ramp;
 
   spoil(Ramp{.runs = {.count = 3, .length = 2}}, ramp);
   spoil(Burst{.runs = {.count = 3, .length = 2}}, burst);
@@ -103,7 +103,7 @@ TEST(Ramp, OfTwoFramesIsABurst) {
 }
 
 TEST(Gap, RemovesWholeJoints) {
-  Clip walk = test::synthetic_walk(100);
+  Recording walk = test::synthetic_walk(100);
   walk.samples.col(4).setConstant(nan);
   const Matrix clean = walk.samples;
 
@@ -124,7 +124,7 @@ TEST(Gap, RemovesWholeJoints) {
 }
 
 TEST(Swap, ExchangesTwoJoints) {
-  Clip walk = test::synthetic_walk(100);
+  Recording walk = test::synthetic_walk(100);
   const Matrix clean = walk.samples;
 
   const Mask touched = spoil(Swap{.runs = {.count = 1, .length = 30}}, walk);
@@ -143,7 +143,7 @@ TEST(Swap, ExchangesTwoJoints) {
 }
 
 TEST(Swap, TakesSingleColumnsWhereThereAreNoJoints) {
-  Clip clip{.samples = Matrix{{1, 2}, {3, 4}}, .columns = {"a", "b"}, .unit = ""};
+  Recording clip{.samples = Matrix{{1, 2}, {3, 4}}, .columns = {"a", "b"}, .unit = ""};
 
   const Mask touched = spoil(Swap{.runs = {.count = 1, .length = 2}}, clip);
 
@@ -152,7 +152,7 @@ TEST(Swap, TakesSingleColumnsWhereThereAreNoJoints) {
 }
 
 TEST(Swap, LeavesAloneWhatIsMissingInEither) {
-  Clip clip{.samples = Matrix{{1, nan}, {3, 4}}, .columns = {"a", "b"}, .unit = ""};
+  Recording clip{.samples = Matrix{{1, nan}, {3, 4}}, .columns = {"a", "b"}, .unit = ""};
 
   const Mask touched = spoil(Swap{.runs = {.count = 1, .length = 2}}, clip);
 
@@ -163,8 +163,8 @@ TEST(Swap, LeavesAloneWhatIsMissingInEither) {
 }
 
 TEST(Runs, RefuseWhatDoesNotFit) {
-  Clip walk = test::synthetic_walk(50);
-  Clip narrow{.samples = Matrix::Zero(50, 1), .columns = {"a"}, .unit = ""};
+  Recording walk = test::synthetic_walk(50);
+  Recording narrow{.samples = Matrix::Zero(50, 1), .columns = {"a"}, .unit = ""};
 
   EXPECT_THAT([&] { spoil(Gap{.runs = {.count = 1, .length = 51}}, walk); },
               ThrowsMessage<ArgumentError>("gap: length is 51, but the clip has only 50 frames"));

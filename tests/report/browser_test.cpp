@@ -4,10 +4,10 @@
 
 #include <gmock/gmock.h>
 
-#include "moclean/io/file.hpp"
+#include "moclean/formats/file.hpp"
 #include "moclean/report/report.hpp"
 
-#include "io/temporary_folder.hpp"
+#include "formats/temporary_folder.hpp"
 #include "report/sample_report.hpp"
 
 namespace moclean::test {

@@ -18,7 +18,7 @@ using testing::StartsWith;
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
-Clip still(Index frames) {
+Recording still(Index frames) {
   return {.samples = Matrix::Zero(frames, 6),
           .columns = {"Hip.x", "Hip.y", "Hip.z", "Head.x", "Head.y", "Head.z"},
           .frame_rate = 0,
@@ -102,7 +102,7 @@ TEST(ReportFigures, CountAFrameThatCleaningSpoilt) {
 
 TEST(ReportFigures, LeaveGapsOut) {
   ReportTake take = one_error();
-  for (Clip* clip : {&take.noisy, &take.clean, &take.outliers}) {
+  for (Recording* clip : {&take.noisy, &take.clean, &take.outliers}) {
     clip->samples.row(1).setConstant(nan);
     clip->samples(2, 5) = nan;
   }

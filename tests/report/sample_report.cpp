@@ -8,11 +8,11 @@
 namespace moclean::test {
 namespace {
 
-Clip chain_walk(Index frames, Index joint_count) {
-  Clip walk{.samples = Matrix(frames, 3 * joint_count),
-            .columns = default_column_names(3 * joint_count),
-            .frame_rate = 60,
-            .unit = "cm"};
+Recording chain_walk(Index frames, Index joint_count) {
+  Recording walk{.samples = Matrix(frames, 3 * joint_count),
+                 .columns = default_column_names(3 * joint_count),
+                 .frame_rate = 60,
+                 .unit = "cm"};
   for (Index f = 0; f < frames; ++f)
     for (Index j = 0; j < joint_count; ++j) {
       const double t = static_cast<double>(f) / 20, at = static_cast<double>(j);
@@ -25,7 +25,7 @@ Clip chain_walk(Index frames, Index joint_count) {
 }  // namespace
 
 ReportTake noisy_take(Index frames, Index joint_count) {
-  const Clip walk = chain_walk(frames, joint_count);
+  const Recording walk = chain_walk(frames, joint_count);
   ReportTake take{.noisy = walk, .clean = walk, .truth = walk, .outliers = walk};
   take.outliers.samples.setZero();
   Random random(1);

@@ -10,7 +10,7 @@ declare -A may_include=(
   [moclean/core]=''
   [moclean/motion]='moclean/core'
   [moclean/body]='moclean/core moclean/motion'
-  [moclean/io]='moclean/core moclean/motion'
+  [moclean/formats]='moclean/core moclean/motion'
   [moclean/noise]='moclean/core moclean/motion'
   [moclean/segment]='moclean/core moclean/motion'
   [moclean/metric]='moclean/core moclean/motion'
@@ -21,8 +21,9 @@ declare -A may_include=(
   [moclean/solve/reference]='moclean/core moclean/solve'
   [moclean/solve/opencl]='moclean/core moclean/device moclean/linalg moclean/solve'
   [moclean/denoise]='moclean/core moclean/motion moclean/body moclean/segment moclean/filter moclean/solve'
-  [moclean/experiment]='moclean/core moclean/motion moclean/io moclean/noise moclean/metric moclean/denoise moclean/solve'
+  [moclean/experiment]='moclean/core moclean/motion moclean/formats moclean/noise moclean/metric moclean/denoise moclean/solve'
   [moclean/report]='moclean/core moclean/motion moclean/metric moclean/denoise'
+  [moclean/run]='moclean/core moclean/motion moclean/formats moclean/segment moclean/filter moclean/linalg moclean/solve moclean/solve/reference moclean/metric moclean/denoise moclean/report'
   [cli]='*'
   [python]='*'
 )
@@ -31,7 +32,7 @@ declare -A may_include=(
 only_in=(
   '#include <CL/|moclean/device|includes OpenCL'
   '#include <clblast|moclean/linalg|includes CLBlast'
-  'fstream|fopen[(]|moclean/io cli|opens a file'
+  'fstream|fopen[(]|moclean/formats cli|opens a file'
   'std::(cout|cerr|clog)|#include <iostream>|(^|[^a-z_])(f?printf|f?puts)[(]|fmt::print|cli|prints'
   '(^|[^a-z_])(exit|_Exit|quick_exit|abort|terminate)[(]|cli|ends the program'
   '(^|[^a-z_])catch [(]|cli|catches'
@@ -44,6 +45,10 @@ may_catch=(
   'moclean/device/device.cpp: an ICD without platforms or devices throws; that is an empty list'
   'moclean/experiment/grid_config.cpp: gives the error of a specification its file and line'
   'moclean/core/parallel.hpp: carries an exception from a thread to the caller'
+  'moclean/run/run_log.hpp: keeps the failure of a take, which need not end the run'
+  'moclean/run/engine.cpp: names the file of a take that a method refuses, and solves alone what fails together'
+  'moclean/run/take_reader.cpp: carries what reading a take threw to who asks for the take'
+  'moclean/run/result_writer.cpp: carries the first exception of its threads to the caller'
   'moclean/solve/opencl/concurrent.cpp: carries the first exception of its threads to the caller'
 )
 

@@ -34,9 +34,9 @@ accepts() {
   rm "$file"
 }
 
-refuses moclean/core/planted.hpp '#include "moclean/motion/clip.hpp"' 'may only include: itself'
-refuses moclean/motion/planted.cpp '  #  include "moclean/io/read_write.hpp"' 'may only include: moclean/core'
-refuses moclean/solve/planted.hpp '#include "moclean/motion/clip.hpp"' 'may only include'
+refuses moclean/core/planted.hpp '#include "moclean/motion/recording.hpp"' 'may only include: itself'
+refuses moclean/motion/planted.cpp '  #  include "moclean/formats/read_write.hpp"' 'may only include: moclean/core'
+refuses moclean/solve/planted.hpp '#include "moclean/motion/recording.hpp"' 'may only include'
 refuses moclean/solve/reference/planted.cpp '#include "moclean/device/device.hpp"' 'may only include'
 refuses moclean/solve/reference/planted.cpp '#include "moclean/solve/opencl/x.hpp"' 'may only include'
 refuses moclean/metric/planted.cpp '#include "moclean/elsewhere/x.hpp"' 'in no folder of the table'
@@ -45,16 +45,16 @@ refuses moclean/linalg/planted.cpp '#include <CL/opencl.hpp>' 'includes OpenCL'
 refuses moclean/device/planted.cpp '#include <clblast.h>' 'includes CLBlast'
 refuses moclean/noise/planted.cpp '#include <fstream>' 'opens a file'
 refuses moclean/noise/planted.cpp 'std::FILE* f = std::fopen("a", "r");' 'opens a file'
-refuses moclean/io/planted.cpp 'void f() { std::cerr << 1; }' 'prints'
-refuses moclean/io/planted.cpp 'void f() { std::printf("x"); }' 'prints'
-refuses moclean/io/planted.cpp 'void f() { fmt::print("x"); }' 'prints'
+refuses moclean/formats/planted.cpp 'void f() { std::cerr << 1; }' 'prints'
+refuses moclean/formats/planted.cpp 'void f() { std::printf("x"); }' 'prints'
+refuses moclean/formats/planted.cpp 'void f() { fmt::print("x"); }' 'prints'
 refuses moclean/solve/planted.cpp 'void f() { std::exit(1); }' 'ends the program'
-refuses moclean/io/planted.cpp '  } catch (const std::exception&) {' 'catches'
+refuses moclean/formats/planted.cpp '  } catch (const std::exception&) {' 'catches'
 refuses moclean/core/planted.cpp "$(printf 'int x;\n%.0s' {1..401})" 'has 401 lines'
 
 accepts moclean/core/planted.cpp '// a comment may say std::cout, catch (...) or #include <CL/opencl.hpp>'
-accepts moclean/io/planted.cpp 'int n = std::snprintf(nullptr, 0, "x");'
-accepts moclean/io/planted.cpp '#include <fstream>'
+accepts moclean/formats/planted.cpp 'int n = std::snprintf(nullptr, 0, "x");'
+accepts moclean/formats/planted.cpp '#include <fstream>'
 accepts moclean/solve/opencl/planted.cpp '#include "moclean/linalg/x.hpp"'
 
 ((failures == 0)) || exit 1

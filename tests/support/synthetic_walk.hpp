@@ -7,7 +7,7 @@
 #include <string>
 
 #include "moclean/core/random.hpp"
-#include "moclean/motion/clip.hpp"
+#include "moclean/motion/recording.hpp"
 
 namespace moclean::test {
 
@@ -17,14 +17,14 @@ namespace moclean::test {
 /// Joint columns swing about a rest position with the first three harmonics of the step, amplitudes
 /// and phases drawn per column. Step rate, forward speed and the share of each harmonic drift over
 /// the take, so that a short stretch has a lower rank than the whole, as in real motion.
-inline Clip synthetic_walk(Index frames, std::uint64_t seed = 1) {
+inline Recording synthetic_walk(Index frames, std::uint64_t seed = 1) {
   constexpr Index joint_count = 31;
   constexpr double rate = 120;
   constexpr double turn = 2 * std::numbers::pi;
   constexpr std::array axis_names = {"x", "y", "z"};
   Random random(seed);
 
-  Clip walk{
+  Recording walk{
       .samples = Matrix(frames, 3 * joint_count), .columns = {}, .frame_rate = rate, .unit = ""};
   for (Index c = 0; c < 3 * joint_count; ++c) {
     walk.columns.push_back("joint" + std::to_string(c / 3) + "." +

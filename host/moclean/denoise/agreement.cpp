@@ -21,8 +21,8 @@ double relative(const Matrix& tested, const Matrix& reference, double data_norm)
 }
 
 void require_same_shape(const Denoised& tested, const Denoised& reference) {
-  const Matrix& a = tested.clip.samples;
-  const Matrix& b = reference.clip.samples;
+  const Matrix& a = tested.motion;
+  const Matrix& b = reference.motion;
   if (a.rows() != b.rows() || a.cols() != b.cols())
     throw ShapeError(
         fmt::format("cannot compare results of {} frames x {} columns and {} frames x {} columns",
@@ -41,13 +41,13 @@ Matrix difference_of(const Matrix& tested, const Matrix& reference) {
 
 Agreement agreement(const Denoised& tested, const Denoised& reference) {
   require_same_shape(tested, reference);
-  const Matrix& a_ref = reference.clip.samples;
-  const Matrix& e_ref = reference.outliers.samples;
+  const Matrix& a_ref = reference.motion;
+  const Matrix& e_ref = reference.outliers;
   const double data_norm = present(a_ref + e_ref).norm();
 
   Agreement result;
-  result.low_rank = relative(tested.clip.samples, a_ref, data_norm);
-  result.sparse = relative(tested.outliers.samples, e_ref, data_norm);
+  result.low_rank = relative(tested.motion, a_ref, data_norm);
+  result.sparse = relative(tested.outliers, e_ref, data_norm);
   for (std::size_t s = 0; s < tested.segments.size(); ++s) {
     const SegmentOutcome& own = tested.segments[s].outcome;
     const SegmentOutcome& expected = reference.segments[s].outcome;

@@ -14,6 +14,7 @@
 #include "moclean/core/error.hpp"
 #include "moclean/core/parallel.hpp"
 #include "moclean/denoise/body_findings.hpp"
+#include "moclean/denoise/low_rank.hpp"
 #include "moclean/denoise/moving_part.hpp"
 #include "moclean/denoise/sample_status.hpp"
 #include "moclean/denoise/smooth_in_time.hpp"
@@ -30,10 +31,10 @@ constexpr double gentle_factor = 2;     // of the thresholds
 constexpr double no_threshold = 1e150;  // its square is finite, and above that of any residual
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
-double rate_of(const Clip& take) { return take.frame_rate > 0 ? take.frame_rate : usual_rate; }
+double rate_of(const Recording& take) { return take.frame_rate > 0 ? take.frame_rate : usual_rate; }
 
 // Whether all columns come in joints of three, enough of them for a body.
-bool has_body(const Clip& take) {
+bool has_body(const Recording& take) {
   for (const Joint& joint : joints(take))
     if (joint.columns != 3) return false;
   return take.samples.cols() >= 6;
@@ -95,7 +96,7 @@ void look_at_body(double frame_rate, const Automatic& method, Prepared& prepared
   prepared.bones = std::move(found.bones);
 }
 
-Prepared prepare(const Clip& take, const Automatic& method) {
+Prepared prepare(const Recording& take, const Automatic& method) {
   Prepared prepared{.samples = take.samples, .prior = {}, .bones = {}, .spans = {}};
   prepared.spans = windows(method, take.frames(), {});
   if (method.body == BodyRules::on && has_body(take)) look_at_body(rate_of(take), method, prepared);
@@ -114,7 +115,7 @@ MotionPrior cut(const MotionPrior& known, const Span& span) {
 }
 
 // What the windows of one solve have in common: columns, and frames or columns per joint.
-MatrixNormal matrix_normal_of(const Clip& take, Rejection reject) {
+MatrixNormal matrix_normal_of(const Recording& take, Rejection reject) {
   MatrixNormal method{.joint_columns = has_body(take) ? 3 : 1,
                       .median_frames = odd_frames(median_seconds, rate_of(take)),
                       .lag_frames = std::max<Index>(1, std::lround(lag_seconds * rate_of(take)))};
@@ -173,25 +174,8 @@ SegmentBatch stack(std::span<const Prepared> prepared, Group& group) {
   return data;
 }
 
-void require_samples(const Clip& take, std::size_t index) {
-  if (take.samples.size() == 0) throw ShapeError(fmt::format("take {} is empty", index));
-  for (Index f = 0; f < take.frames(); ++f)
-    for (Index c = 0; c < take.samples.cols(); ++c)
-      if (std::isinf(take.samples(f, c)))
-        throw TakeError(index, fmt::format("infinite at frame {}, column {}", f,
-                                           take.columns[static_cast<std::size_t>(c)]));
-}
-
-// The take without what it says of its motion.
-Clip like(const Clip& take, Matrix samples) {
-  return {.samples = std::move(samples),
-          .columns = take.columns,
-          .frame_rate = take.frame_rate,
-          .unit = take.unit};
-}
-
 // What moves in each take. Throws for the first in which nothing moves as motion does.
-std::vector<MovingPart> moving_parts(std::span<const Clip> takes, const Automatic& method,
+std::vector<MovingPart> moving_parts(std::span<const Recording> takes, const Automatic& method,
                                      int jobs) {
   const bool find_lost = method.body == BodyRules::on && method.reject != Rejection::off;
   std::vector<MovingPart> parts(takes.size());
@@ -209,21 +193,21 @@ std::vector<MovingPart> moving_parts(std::span<const Clip> takes, const Automati
 }
 
 // A fill that may be a body's size away is none.
-void leave_unknown(const Clip& take, double size, Denoised& result) {
+void leave_unknown(const Recording& take, double size, Denoised& result) {
   if (size <= 0) return;
-  const Mask unknown = take.samples.array().isNaN() && result.sigma->samples.array() > size;
-  result.clip.samples = unknown.select(missing, result.clip.samples);
-  result.sigma->samples = unknown.select(missing, result.sigma->samples);
+  const Mask unknown = take.samples.array().isNaN() && result.sigma->array() > size;
+  result.motion = unknown.select(missing, result.motion);
+  *result.sigma = unknown.select(missing, *result.sigma);
 }
 
 // Goes back towards trusted samples where that is nearer to the truth than all the way.
-void go_back(const Clip& take, const Mask& trusted, Matrix& motion) {
+void go_back(const Recording& take, const Mask& trusted, Matrix& motion) {
   const Matrix samples = trusted.select(take.samples, missing);
   const double share = worthwhile_share(body_take(samples, rate_of(take)), motion);
   motion = trusted.select(take.samples + share * (motion - take.samples), motion);
 }
 
-Denoised result_of(const Clip& take, const Prepared& prepared, const Solution& solution,
+Denoised result_of(const Recording& take, const Prepared& prepared, const Solution& solution,
                    Index segment) {
   const Spans& spans = prepared.spans;
   Matrix motion = blend_spans(solution.low_rank, spans, segment);
@@ -231,8 +215,8 @@ Denoised result_of(const Clip& take, const Prepared& prepared, const Solution& s
   const Mask trusted = observed && blend_spans(*solution.trusted, spans, segment).array() >= 0.5;
   if (prepared.prior.noise > 0) go_back(take, trusted, motion);
   Denoised result;
-  result.clip = like(take, std::move(motion));
-  result.sigma = like(take, blend_spans(*solution.deviation, spans, segment));
+  result.motion = std::move(motion);
+  result.sigma = blend_spans(*solution.deviation, spans, segment);
   result.trusted = trusted;
   leave_unknown(take, prepared.prior.size, result);
   for (std::size_t s = 0; s < spans.size(); ++s)
@@ -252,7 +236,7 @@ Mask rejected_motion(const MovingPart& part, const Prepared& prepared, const Den
     const auto samples = part.clip.samples.middleCols<3>(3 * j);
     const auto trusted = result.trusted->middleCols<3>(3 * j);
     rejected.col(j) = (!samples.array().isNaN() && !trusted).rowwise().any();
-    const auto off = (samples - result.clip.samples.middleCols<3>(3 * j)).rowwise().norm();
+    const auto off = (samples - result.motion.middleCols<3>(3 * j)).rowwise().norm();
     displaced.col(j) = rejected.col(j).select(off, 0) / std::max(bones.noise(j), 1e-300);
   }
   return turning_in_noise(rejected, bones, displaced);
@@ -323,9 +307,9 @@ std::vector<std::size_t> confirm_motion(std::span<const MovingPart> parts,
 }
 
 // The result of a take of which nothing moves.
-Denoised at_rest(const Clip& take) {
-  const Clip none{.samples = Matrix(take.frames(), 0), .columns = {}, .frame_rate = 0, .unit = ""};
-  return {.clip = none, .outliers = none, .sigma = none, .trusted = Mask(take.frames(), 0)};
+Denoised at_rest(const Recording& take) {
+  const Matrix none(take.frames(), 0);
+  return {.motion = none, .outliers = none, .sigma = none, .trusted = Mask(take.frames(), 0)};
 }
 
 }  // namespace
@@ -333,6 +317,8 @@ Denoised at_rest(const Clip& take) {
 SegmentPlan plan(const Automatic& method, Index frames) {
   return segments_of_length(frames, method.window);
 }
+
+std::uint64_t copies_held(const Automatic&) { return copies_held(Segmentation{.overlap = 1}); }
 
 void check(const Automatic& method) {
   if (method.window < shortest_window)
@@ -343,12 +329,12 @@ void check(const Automatic& method) {
         fmt::format("auto: overlap is {}, expected at least 0 frames", method.overlap));
 }
 
-std::vector<Denoised> AutomaticDenoiser::denoise(std::span<const Clip> takes,
+std::vector<Denoised> AutomaticDenoiser::denoise(std::span<const Recording> takes,
                                                  const Monitor& monitor) {
   check(method_);
   using Clock = std::chrono::steady_clock;
   const Clock::time_point begin = Clock::now();
-  for (std::size_t t = 0; t < takes.size(); ++t) require_samples(takes[t], t);
+  require_usable(takes, true);
   const std::vector<MovingPart> parts = moving_parts(takes, method_, jobs_);
   std::vector<Prepared> prepared(takes.size());
   for_each_index(static_cast<Index>(takes.size()), jobs_, [&](Index t) {
@@ -370,7 +356,8 @@ std::vector<Denoised> AutomaticDenoiser::denoise(std::span<const Clip> takes,
     if (parts[t].columns.empty()) results[t] = at_rest(takes[t]);
     put_back(takes[t], parts[t], results[t]);
     leave_unobserved(takes[t], results[t]);
-    if (method_.smooth == Smoothing::off) keep_observed(takes[t], results[t]);
+    if (method_.smooth == Smoothing::off)
+      keep_observed(takes[t], trusted_samples(takes[t], results[t]), results[t]);
     results[t].solve_seconds = seconds * static_cast<double>(takes[t].frames()) / frames;
   });
   return results;

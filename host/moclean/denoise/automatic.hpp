@@ -56,6 +56,10 @@ struct Automatic {
 /// The windows of a take without cuts, before they overlap.
 SegmentPlan plan(const Automatic& method, Index frames);
 
+/// Copies of the samples of its takes that AutomaticDenoiser has at a time, the results but sigma
+/// among them: as with segments that overlap.
+std::uint64_t copies_held(const Automatic& method);
+
 /// Throws ArgumentError naming the first parameter out of its range.
 void check(const Automatic& method);
 
@@ -70,7 +74,8 @@ class AutomaticDenoiser final : public Denoiser {
   AutomaticDenoiser(const Automatic& method, Backend& backend, int jobs = 1)
       : method_(method), backend_(backend), jobs_(jobs) {}
 
-  std::vector<Denoised> denoise(std::span<const Clip> takes, const Monitor& monitor = {}) override;
+  std::vector<Denoised> denoise(std::span<const Recording> takes,
+                                const Monitor& monitor = {}) override;
 
  private:
   Automatic method_;

@@ -25,18 +25,20 @@ double squared_distance(const ConstMatrixRef& a, const ConstMatrixRef& b) {
   return difference.array().isNaN().select(0, difference.array()).square().sum();
 }
 
-std::vector<double> costs_of(std::span<const Candidate> candidates, std::span<const Clip> takes,
-                             std::span<const Clip> medians, const RobustPca& method,
-                             Backend& backend, const std::stop_token& stop) {
+std::vector<double> costs_of(std::span<const Candidate> candidates,
+                             std::span<const Recording> takes, std::span<const Matrix> medians,
+                             const RobustPca& method, Backend& backend,
+                             const std::stop_token& stop) {
   std::vector<Index> first_row = {0};
   for (const Candidate& candidate : candidates)
     first_row.push_back(first_row.back() + candidate.span.frames());
   SegmentBatch batch(takes[candidates.front().take].samples.cols(), std::move(first_row));
-  const auto rows_of = [](const Clip& clip, const Span& span) {
-    return clip.samples.middleRows(span.first, span.frames());
+  const auto rows_of = [](const Matrix& samples, const Span& span) {
+    return samples.middleRows(span.first, span.frames());
   };
   Index segment = 0;
-  for (const auto& [take, span] : candidates) batch.segment(segment++) = rows_of(takes[take], span);
+  for (const auto& [take, span] : candidates)
+    batch.segment(segment++) = rows_of(takes[take].samples, span);
 
   const Solution solution = backend.solve(batch, method, {.stop = stop});
   std::vector<double> costs;
@@ -64,12 +66,12 @@ std::vector<double> costs_in_batches(std::span<const Candidate> candidates, Inde
 
 }  // namespace
 
-std::vector<SegmentPlan> automatic_plans(std::span<const Clip> takes,
+std::vector<SegmentPlan> automatic_plans(std::span<const Recording> takes,
                                          std::span<const Index> segments, RobustPca method,
                                          Backend& backend, const std::stop_token& stop) {
   method.tolerance = std::max(method.tolerance, coarse_tolerance);
   std::vector<SegmentPlan> plans;
-  std::vector<Clip> medians(takes.size());
+  std::vector<Matrix> medians(takes.size());
   std::map<Index, std::vector<Candidate>> by_width;
   std::map<Index, Index> rows;
   for (std::size_t t = 0; t < takes.size(); ++t) {

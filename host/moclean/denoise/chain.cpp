@@ -1,5 +1,6 @@
 #include "moclean/denoise/chain.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -10,10 +11,10 @@ namespace moclean {
 namespace {
 
 // As planned: there may be more where a method cuts takes itself.
-Index segments_of(const Step& step, std::span<const Clip> takes) {
+Index segments_of(const Step& step, std::span<const Recording> takes) {
   if (std::holds_alternative<Filter>(step)) return 0;
   Index count = 0;
-  for (const Clip& take : takes) {
+  for (const Recording& take : takes) {
     const auto* low_rank = std::get_if<LowRank>(&step);
     const SegmentPlan cut = low_rank ? plan(low_rank->segmentation, take.frames())
                                      : plan(std::get<Automatic>(step), take.frames());
@@ -23,14 +24,26 @@ Index segments_of(const Step& step, std::span<const Clip> takes) {
 }
 
 // What was taken away; 0 where either is missing.
-Clip difference(const Clip& take, const Clip& clean) {
-  Clip outliers = take;
-  const Matrix removed = take.samples - clean.samples;
-  outliers.samples = removed.array().isNaN().select(0, removed);
-  return outliers;
+Matrix difference(const Matrix& samples, const Matrix& motion) {
+  const Matrix removed = samples - motion;
+  return removed.array().isNaN().select(0, removed);
 }
 
 }  // namespace
+
+// Filters have fewer than any matrix method. Several steps keep what they began with and what the
+// last one made.
+std::uint64_t copies_held(const Chain& chain) {
+  constexpr std::uint64_t kept_by_steps = 2;
+  std::uint64_t most = copies_held(Segmentation{});
+  for (const Step& step : chain) {
+    if (const auto* low_rank = std::get_if<LowRank>(&step))
+      most = std::max(most, copies_held(low_rank->segmentation));
+    if (const auto* automatic = std::get_if<Automatic>(&step))
+      most = std::max(most, copies_held(*automatic));
+  }
+  return chain.size() > 1 ? most + kept_by_steps : most;
+}
 
 ChainDenoiser::ChainDenoiser(Chain chain, Backend* backend, int jobs)
     : chain_(std::move(chain)), backend_(backend), jobs_(jobs) {
@@ -43,7 +56,7 @@ ChainDenoiser::ChainDenoiser(Chain chain, Backend* backend, int jobs)
   }
 }
 
-std::vector<Denoised> ChainDenoiser::solve(const Step& step, std::span<const Clip> takes,
+std::vector<Denoised> ChainDenoiser::solve(const Step& step, std::span<const Recording> takes,
                                            const Monitor& monitor) {
   if (const auto* automatic = std::get_if<Automatic>(&step))
     return AutomaticDenoiser(*automatic, *backend_, jobs_).denoise(takes, monitor);
@@ -52,7 +65,8 @@ std::vector<Denoised> ChainDenoiser::solve(const Step& step, std::span<const Cli
       .denoise(takes, monitor);
 }
 
-std::vector<Denoised> ChainDenoiser::denoise(std::span<const Clip> takes, const Monitor& monitor) {
+std::vector<Denoised> ChainDenoiser::denoise(std::span<const Recording> takes,
+                                             const Monitor& monitor) {
   if (chain_.size() == 1 && needs_backend(chain_)) return solve(chain_.front(), takes, monitor);
   Index finished = 0, planned = 0;  // segments of steps that are done, and of those to come
   for (const Step& step : chain_) planned += segments_of(step, takes);
@@ -63,34 +77,35 @@ std::vector<Denoised> ChainDenoiser::denoise(std::span<const Clip> takes, const 
           {.finished = finished + own.finished, .total = finished + own.total + planned});
     };
 
-  std::vector<Clip> clips(takes.begin(), takes.end());
+  std::vector<Recording> cleaned;  // so far
+  for (const Recording& take : takes) cleaned.push_back(like(take, take.samples));
   std::vector<Denoised> results(takes.size());
   for (const Step& step : chain_) {
     if (monitor.stop.stop_requested()) throw Cancelled();
     const auto* filter = std::get_if<Filter>(&step);
     if (!filter) {
       planned -= segments_of(step, takes);
-      auto solved = solve(step, clips, part);
-      for (std::size_t t = 0; t < clips.size(); ++t) {
+      auto solved = solve(step, cleaned, part);
+      for (std::size_t t = 0; t < cleaned.size(); ++t) {
         finished += static_cast<Index>(solved[t].segments.size());
-        clips[t] = std::move(solved[t].clip);
+        cleaned[t].samples = std::move(solved[t].motion);
         results[t].solve_seconds += solved[t].solve_seconds;
         if (results[t].segments.empty()) results[t].segments = std::move(solved[t].segments);
         if (&step == &chain_.back()) results[t].sigma = std::move(solved[t].sigma);
       }
       continue;
     }
-    for (std::size_t t = 0; t < clips.size(); ++t) {
+    for (std::size_t t = 0; t < cleaned.size(); ++t) {
       const auto begin = std::chrono::steady_clock::now();
-      clips[t] = filtered(clips[t], *filter, jobs_);
+      cleaned[t].samples = filtered(cleaned[t], *filter, jobs_);
       results[t].solve_seconds +=
           std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     }
   }
-  for (std::size_t t = 0; t < clips.size(); ++t) {
-    results[t].outliers = difference(takes[t], clips[t]);
+  for (std::size_t t = 0; t < cleaned.size(); ++t) {
+    results[t].outliers = difference(takes[t].samples, cleaned[t].samples);
     results[t].unobserved = unobserved_columns(takes[t]);
-    results[t].clip = std::move(clips[t]);
+    results[t].motion = std::move(cleaned[t].samples);
   }
   return results;
 }

@@ -69,6 +69,10 @@ bool accepts_missing(const Chain& chain);
 /// Whether the result has a standard deviation per sample (Denoised::sigma).
 bool has_sigma(const Chain& chain);
 
+/// Copies of the samples of its takes that ChainDenoiser has at a time beside the takes, the
+/// results but sigma among them.
+std::uint64_t copies_held(const Chain& chain);
+
 /// Runs a chain. The motion is what the last step made; the outliers are those of the method if it
 /// is the only step, otherwise take - motion, 0 where either is missing. Segments are those of the
 /// first matrix method; a chain of filters has none.
@@ -82,10 +86,11 @@ class ChainDenoiser final : public Denoiser {
   /// See Denoiser. Progress counts the segments of all matrix methods; a chain of filters reports
   /// nothing. A stop takes effect between filters. Throws ArgumentError for a take without the
   /// frame rate that a filter needs.
-  std::vector<Denoised> denoise(std::span<const Clip> takes, const Monitor& monitor = {}) override;
+  std::vector<Denoised> denoise(std::span<const Recording> takes,
+                                const Monitor& monitor = {}) override;
 
  private:
-  std::vector<Denoised> solve(const Step& step, std::span<const Clip> takes,
+  std::vector<Denoised> solve(const Step& step, std::span<const Recording> takes,
                               const Monitor& monitor);
 
   Chain chain_;

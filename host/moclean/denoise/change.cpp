@@ -4,20 +4,19 @@
 #include <cmath>
 
 #include "moclean/body/vanished.hpp"
-#include "moclean/denoise/sample_status.hpp"
 
 namespace moclean {
 namespace {
 
 // Size of the body whose joints are those of three columns.
-double size_of(const std::vector<Joint>& all, const Clip& motion) {
+double size_of(const std::vector<Joint>& all, const Matrix& motion, double frame_rate) {
   std::vector<Index> first;
   for (const Joint& joint : all)
     if (joint.columns == 3) first.push_back(joint.first_column);
-  Matrix positions(motion.frames(), 3 * static_cast<Index>(first.size()));
+  Matrix positions(motion.rows(), 3 * static_cast<Index>(first.size()));
   for (std::size_t j = 0; j < first.size(); ++j)
-    positions.middleCols<3>(3 * static_cast<Index>(j)) = motion.samples.middleCols<3>(first[j]);
-  BodyTake body = body_take(positions, motion.frame_rate);
+    positions.middleCols<3>(3 * static_cast<Index>(j)) = motion.middleCols<3>(first[j]);
+  BodyTake body = body_take(positions, frame_rate);
   const std::vector<bool> still = still_joints(body);
   for (std::size_t j = 0; j < still.size(); ++j)
     if (still[j]) body.seen.col(static_cast<Index>(j)).setConstant(false);
@@ -25,9 +24,9 @@ double size_of(const std::vector<Joint>& all, const Clip& motion) {
 }
 
 // How far the observed columns of a joint were moved in each frame.
-Eigen::ArrayXd moved(const Clip& take, const Clip& motion, const Joint& joint) {
-  const auto was = take.samples.middleCols(joint.first_column, joint.columns);
-  const auto is = motion.samples.middleCols(joint.first_column, joint.columns);
+Eigen::ArrayXd moved(const Matrix& samples, const Matrix& motion, const Joint& joint) {
+  const auto was = samples.middleCols(joint.first_column, joint.columns);
+  const auto is = motion.middleCols(joint.first_column, joint.columns);
   const Matrix step = is - was;
   const Eigen::ArrayXd distance = step.array().isNaN().select(0, step).matrix().rowwise().norm();
   const auto at_origin = (was.array() == 0).rowwise().all();
@@ -36,8 +35,7 @@ Eigen::ArrayXd moved(const Clip& take, const Clip& motion, const Joint& joint) {
 
 }  // namespace
 
-Change change_of(const Clip& take, const Denoised& result) {
-  const auto counts = count_status(sample_status(take, result));
+Change change_of(const Recording& take, const Matrix& motion, const StatusCounts& counts) {
   const auto share = [&](SampleStatus status) {
     return static_cast<double>(counts[static_cast<std::size_t>(status)]) /
            static_cast<double>(std::max<Index>(1, take.samples.size()));
@@ -46,10 +44,10 @@ Change change_of(const Clip& take, const Denoised& result) {
   const std::vector<Joint> all = joints(take);
   for (const Joint& joint : all) {
     Index frame = 0;
-    const double distance = moved(take, result.clip, joint).maxCoeff(&frame);
+    const double distance = moved(take.samples, motion, joint).maxCoeff(&frame);
     if (distance > change.largest.distance) change.largest = {distance, joint.name, frame};
   }
-  change.body_size = size_of(all, result.clip);
+  change.body_size = size_of(all, motion, take.frame_rate);
   return change;
 }
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "moclean/denoise/denoiser.hpp"
+#include "moclean/denoise/sample_status.hpp"
 
 namespace moclean {
 
@@ -26,8 +26,8 @@ struct Change {
   double largest_share() const { return body_size > 0 ? largest.distance / body_size : 0; }
 };
 
-/// Compares a result with its take. Corrected are samples that sample_status() calls so. Throws
-/// ShapeError if they differ in shape.
-Change change_of(const Clip& take, const Denoised& result);
+/// Compares the motion of a result, of the same shape, with its take, given what count_status()
+/// says of the samples.
+Change change_of(const Recording& take, const Matrix& motion, const StatusCounts& counts);
 
 }  // namespace moclean

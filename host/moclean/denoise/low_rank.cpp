@@ -1,13 +1,9 @@
 #include "moclean/denoise/low_rank.hpp"
 
 #include <chrono>
-#include <cmath>
 #include <map>
 #include <utility>
 
-#include <fmt/format.h>
-
-#include "moclean/core/error.hpp"
 #include "moclean/core/parallel.hpp"
 #include "moclean/denoise/automatic_plan.hpp"
 #include "moclean/denoise/unobserved.hpp"
@@ -22,25 +18,7 @@ struct Group {
   SegmentBatch data;
 };
 
-void require_usable(const Clip& take, std::size_t index, bool missing_accepted) {
-  if (take.samples.size() == 0)
-    throw ShapeError(fmt::format("take {} is empty ({} frames x {} columns)", index, take.frames(),
-                                 take.samples.cols()));
-  if (static_cast<Index>(take.columns.size()) != take.samples.cols())
-    throw ShapeError(fmt::format("take {} names {} columns but has {}", index, take.columns.size(),
-                                 take.samples.cols()));
-  for (Index f = 0; f < take.frames(); ++f)
-    for (Index c = 0; c < take.samples.cols(); ++c) {
-      const double sample = take.samples(f, c);
-      if (!std::isfinite(sample) && !(missing_accepted && std::isnan(sample)))
-        throw ShapeError(
-            fmt::format("take {}: not finite at frame {}, column {} "
-                        "(missing samples are not supported by this method)",
-                        index, f, take.columns[static_cast<std::size_t>(c)]));
-    }
-}
-
-Group stack(std::span<const Clip> takes, std::vector<std::size_t> members,
+Group stack(std::span<const Recording> takes, std::vector<std::size_t> members,
             std::span<const Spans> cuts) {
   std::vector<Index> first_row = {0}, first_segments;
   for (const std::size_t t : members) {
@@ -54,7 +32,7 @@ Group stack(std::span<const Clip> takes, std::vector<std::size_t> members,
 }
 
 // Takes of equal width together, in increasing width.
-std::vector<Group> group_by_width(std::span<const Clip> takes, std::span<const Spans> cuts) {
+std::vector<Group> group_by_width(std::span<const Recording> takes, std::span<const Spans> cuts) {
   std::map<Index, std::vector<std::size_t>> by_width;
   for (std::size_t t = 0; t < takes.size(); ++t) by_width[takes[t].samples.cols()].push_back(t);
   std::vector<Group> groups;
@@ -62,21 +40,12 @@ std::vector<Group> group_by_width(std::span<const Clip> takes, std::span<const S
   return groups;
 }
 
-// One take out of a batch, named like the take.
-Clip unstack(const SegmentBatch& batch, std::span<const Span> cut, Index first_segment,
-             const Clip& take) {
-  return {.samples = blend_spans(batch, cut, first_segment),
-          .columns = take.columns,
-          .frame_rate = take.frame_rate,
-          .unit = take.unit};
-}
-
 // Automatic segments are compared by robust PCA, whatever the method: by its own if it is that.
-std::vector<SegmentPlan> plans_of(std::span<const Clip> takes, const Segmentation& segmentation,
-                                  const Method& method, Backend& backend,
-                                  const std::stop_token& stop) {
+std::vector<SegmentPlan> plans_of(std::span<const Recording> takes,
+                                  const Segmentation& segmentation, const Method& method,
+                                  Backend& backend, const std::stop_token& stop) {
   std::vector<SegmentPlan> equal;
-  for (const Clip& take : takes) equal.push_back(plan(segmentation, take.frames()));
+  for (const Recording& take : takes) equal.push_back(plan(segmentation, take.frames()));
   if (!segmentation.automatic) return equal;
   std::vector<Index> counts;
   for (const SegmentPlan& one : equal) counts.push_back(static_cast<Index>(one.size()) - 1);
@@ -85,15 +54,15 @@ std::vector<SegmentPlan> plans_of(std::span<const Clip> takes, const Segmentatio
 }
 
 void scatter(const Group& group, const Solution& solution, double seconds, int jobs,
-             std::span<const Clip> takes, std::span<const Spans> cuts,
+             std::span<const Recording> takes, std::span<const Spans> cuts,
              std::vector<Denoised>& results) {
   for_each_index(static_cast<Index>(group.takes.size()), jobs, [&](Index i) {
     const std::size_t t = group.takes[static_cast<std::size_t>(i)];
     const Index segment = group.first_segments[static_cast<std::size_t>(i)];
     auto outcome = solution.segments.begin() + segment;
     Denoised& result = results[t];
-    result.clip = unstack(solution.low_rank, cuts[t], segment, takes[t]);
-    result.outliers = unstack(solution.sparse, cuts[t], segment, takes[t]);
+    result.motion = blend_spans(solution.low_rank, cuts[t], segment);
+    result.outliers = blend_spans(solution.sparse, cuts[t], segment);
     leave_unobserved(takes[t], result);
     Index rows = 0;
     for (const Span& span : cuts[t]) {
@@ -113,10 +82,19 @@ SegmentPlan plan(const Segmentation& segmentation, Index frames) {
   return segments_of_length(frames, segmentation.length);
 }
 
-std::vector<Denoised> LowRankDenoiser::denoise(std::span<const Clip> takes,
+// The stacked data, A and E beside the results, and padding of the rows. Segments that overlap are
+// stacked and solved at twice their length at most.
+std::uint64_t copies_held(const Segmentation& segmentation) {
+  constexpr std::uint64_t stacked = 1, solved = 2, padding = 1, overlapping = 4;
+  std::uint64_t copies = stacked + solved + copies_in_result + padding;
+  if (segmentation.overlap > 0) copies += overlapping;
+  if (segmentation.automatic) copies += copies_held_by_plans;
+  return copies;
+}
+
+std::vector<Denoised> LowRankDenoiser::denoise(std::span<const Recording> takes,
                                                const Monitor& monitor) {
-  for (std::size_t t = 0; t < takes.size(); ++t)
-    require_usable(takes[t], t, accepts_missing(method_));
+  require_usable(takes, accepts_missing(method_));
   std::vector<Spans> cuts;
   for (const SegmentPlan& one : plans_of(takes, segmentation_, method_, backend_, monitor.stop))
     cuts.push_back(overlapping_spans(one, segmentation_.overlap));

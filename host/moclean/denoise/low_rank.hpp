@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 #include "moclean/denoise/denoiser.hpp"
 #include "moclean/segment/spans.hpp"
 
@@ -21,6 +23,9 @@ struct Segmentation {
 /// The equal plan for a take of `frames` frames; an automatic one has as many segments.
 SegmentPlan plan(const Segmentation& segmentation, Index frames);
 
+/// Copies of the samples of its takes that LowRankDenoiser has at a time, the results among them.
+std::uint64_t copies_held(const Segmentation& segmentation);
+
 /// A matrix method segment by segment: cut, split every segment, stitch. With robust PCA it is the
 /// segmented low-rank approximation of Peng et al.; with Segmentation{.whole = true} plain RPCA of
 /// the take. NaN is refused unless the method accepts it; the completed clip then has none but
@@ -34,7 +39,8 @@ class LowRankDenoiser final : public Denoiser {
   LowRankDenoiser(Segmentation segmentation, Method method, Backend& backend, int jobs = 1)
       : segmentation_(segmentation), method_(std::move(method)), backend_(backend), jobs_(jobs) {}
 
-  std::vector<Denoised> denoise(std::span<const Clip> takes, const Monitor& monitor = {}) override;
+  std::vector<Denoised> denoise(std::span<const Recording> takes,
+                                const Monitor& monitor = {}) override;
 
  private:
   Segmentation segmentation_;

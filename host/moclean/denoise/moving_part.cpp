@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "moclean/body/vanished.hpp"
 #include "moclean/core/order_statistics.hpp"
@@ -56,13 +57,6 @@ std::vector<Index> moving_columns(const std::vector<Joint>& all, const std::vect
   return found;
 }
 
-Clip named_like(const Clip& take, Matrix samples) {
-  return {.samples = std::move(samples),
-          .columns = take.columns,
-          .frame_rate = take.frame_rate,
-          .unit = take.unit};
-}
-
 // What is taken from every column; see MovingPart.
 Eigen::RowVectorXd centres(const std::vector<Joint>& all, const MovingPart& part) {
   Eigen::RowVectorXd centre = part.medians;
@@ -89,7 +83,7 @@ double unit_of(const Matrix& samples) {
 }
 
 // The motion of the take, given that of the part.
-Matrix motion_of(const Clip& take, const MovingPart& part, const Matrix& moved) {
+Matrix motion_of(const Recording& take, const MovingPart& part, const Matrix& moved) {
   constexpr double rounding = 4 * std::numeric_limits<double>::epsilon();
   Matrix motion(take.frames(), take.samples.cols());
   for (Index p = 0; p < moved.cols(); ++p) {
@@ -107,15 +101,12 @@ Matrix motion_of(const Clip& take, const MovingPart& part, const Matrix& moved) 
 
 }  // namespace
 
-MovingPart moving_part(const Clip& take, bool find_lost) {
+MovingPart moving_part(const Recording& take, bool find_lost) {
   const std::vector<Joint> all = joints(take);
   Matrix samples = take.samples;
   if (find_lost) drop_lost(all, take.frame_rate, samples);
   MovingPart part{
-      .clip = {.samples = {}, .columns = {}, .frame_rate = take.frame_rate, .unit = take.unit},
-      .columns = {},
-      .medians = Eigen::RowVectorXd::Zero(samples.cols()),
-      .centre = {}};
+      .clip = {}, .columns = {}, .medians = Eigen::RowVectorXd::Zero(samples.cols()), .centre = {}};
   for (Index c = 0; c < samples.cols(); ++c) {
     const auto middle = middle_of(samples, c);
     if (middle) part.medians(c) = middle->value;
@@ -123,32 +114,28 @@ MovingPart moving_part(const Clip& take, bool find_lost) {
   }
   part.columns = moving_columns(all, part.still);
   part.centre = centres(all, part);
-  part.clip.samples.resize(samples.rows(), static_cast<Index>(part.columns.size()));
-  for (Index p = 0; p < part.clip.samples.cols(); ++p) {
-    const Index c = part.columns[static_cast<std::size_t>(p)];
-    part.clip.samples.col(p) = samples.col(c).array() - part.centre(c);
-    part.clip.columns.push_back(take.columns[static_cast<std::size_t>(c)]);
-  }
+  part.clip = columns_of(like(take, std::move(samples)), part.columns);
+  for (Index p = 0; p < part.clip.samples.cols(); ++p)
+    part.clip.samples.col(p).array() -= part.centre(part.columns[static_cast<std::size_t>(p)]);
   part.unit = unit_of(part.clip.samples);
   part.clip.samples /= part.unit;
   return part;
 }
 
-void put_back(const Clip& take, const MovingPart& part, Denoised& result) {
+void put_back(const Recording& take, const MovingPart& part, Denoised& result) {
   const Mask observed = !take.samples.array().isNaN();
   Mask trusted = take.samples.array() == part.medians.replicate(take.frames(), 1).array();
   Matrix sigma = trusted.select(Matrix::Zero(take.frames(), trusted.cols()), missing);
   for (std::size_t p = 0; p < part.columns.size(); ++p) {
     const Index c = part.columns[p];
-    sigma.col(c) = part.unit * result.sigma->samples.col(static_cast<Index>(p));
+    sigma.col(c) = part.unit * result.sigma->col(static_cast<Index>(p));
     if (part.still[static_cast<std::size_t>(c)]) continue;
     trusted.col(c) = result.trusted->col(static_cast<Index>(p));
   }
-  const Matrix motion = motion_of(take, part, result.clip.samples);
-  const Mask gross = observed && !trusted && !motion.array().isNaN();
-  result.outliers = named_like(take, gross.select(take.samples - motion, 0));
-  result.clip = named_like(take, motion);
-  result.sigma = named_like(take, std::move(sigma));
+  result.motion = motion_of(take, part, result.motion);
+  const Mask gross = observed && !trusted && !result.motion.array().isNaN();
+  result.outliers = gross.select(take.samples - result.motion, 0);
+  result.sigma = std::move(sigma);
   result.trusted = std::move(trusted);
 }
 

@@ -10,17 +10,17 @@
 namespace moclean {
 namespace {
 
-void require_same_shape(const Clip& take, const Matrix& result, const char* what) {
+void require_same_shape(const Recording& take, const Matrix& result, const char* what) {
   const Matrix& samples = take.samples;
   if (samples.rows() == result.rows() && samples.cols() == result.cols()) return;
   throw ShapeError(fmt::format("the {} of a result is {} frames x {} columns, the take {} x {}",
                                what, result.rows(), result.cols(), samples.rows(), samples.cols()));
 }
 
-void require_same_shape(const Clip& take, const Denoised& result) {
-  require_same_shape(take, result.clip.samples, "motion");
-  require_same_shape(take, result.outliers.samples, "outliers");
-  if (result.sigma) require_same_shape(take, result.sigma->samples, "sigma");
+void require_same_shape(const Recording& take, const Denoised& result) {
+  require_same_shape(take, result.motion, "motion");
+  require_same_shape(take, result.outliers, "outliers");
+  if (result.sigma) require_same_shape(take, *result.sigma, "sigma");
   if (result.trusted && (result.trusted->rows() != take.samples.rows() ||
                          result.trusted->cols() != take.samples.cols()))
     throw ShapeError("the trusted samples of a result are not those of the take");
@@ -35,40 +35,48 @@ void clear(Matrix& samples, const Mask& observed, Index first, Index last, const
 
 }  // namespace
 
-Mask trusted_samples(const Clip& take, const Denoised& result) {
+Mask trusted_samples(const Recording& take, const Denoised& result) {
   require_same_shape(take, result);
   const auto observed = !take.samples.array().isNaN();
   if (result.trusted) return *result.trusted && observed;
-  const auto removed = result.outliers.samples.array().abs();
-  if (result.sigma) return observed && removed <= result.sigma->samples.array();
+  const auto removed = result.outliers.array().abs();
+  if (result.sigma) return observed && removed <= result.sigma->array();
   return observed && removed == 0;
 }
 
-Clip sample_status(const Clip& take, const Denoised& result) {
-  const Mask trusted = trusted_samples(take, result);
-  Clip status = take;
-  for (Index f = 0; f < take.frames(); ++f)
-    for (Index c = 0; c < take.samples.cols(); ++c) {
+StatusCounts count_status(const Recording& take, const Denoised& result, const Mask& trusted) {
+  const auto given = !result.motion.array().isNaN();
+  const auto observed = !take.samples.array().isNaN();
+  const Index kept = (given && trusted).count(), filled = (given && !observed).count(),
+              all = given.count();
+  StatusCounts counts{};
+  const auto count = [&](SampleStatus status, Index samples) {
+    counts[static_cast<std::size_t>(status)] = samples;
+  };
+  count(SampleStatus::kept, kept);
+  count(SampleStatus::corrected, all - kept - filled);
+  count(SampleStatus::filled, filled);
+  count(SampleStatus::missing, take.samples.size() - all);
+  return counts;
+}
+
+Matrix status_numbers(const Recording& take, const Denoised& result, const Mask& trusted) {
+  Matrix numbers(take.samples.rows(), take.samples.cols());
+  for (Index f = 0; f < numbers.rows(); ++f)
+    for (Index c = 0; c < numbers.cols(); ++c) {
       SampleStatus found = SampleStatus::corrected;
-      if (std::isnan(result.clip.samples(f, c)))
+      if (std::isnan(result.motion(f, c)))
         found = SampleStatus::missing;
       else if (std::isnan(take.samples(f, c)))
         found = SampleStatus::filled;
       else if (trusted(f, c))
         found = SampleStatus::kept;
-      status.samples(f, c) = static_cast<double>(found);
+      numbers(f, c) = static_cast<double>(found);
     }
-  return status;
+  return numbers;
 }
 
-std::array<Index, 4> count_status(const Clip& status) {
-  std::array<Index, 4> counts{};
-  for (std::size_t s = 0; s < counts.size(); ++s)
-    counts[s] = (status.samples.array() == static_cast<double>(s)).count();
-  return counts;
-}
-
-void leave_long_gaps(const Clip& take, double seconds, Denoised& result) {
+void leave_long_gaps(const Recording& take, double seconds, Denoised& result) {
   require_same_shape(take, result);
   if (!(seconds >= 0))
     throw ArgumentError(fmt::format("longest gap is {} s, expected at least 0", seconds));
@@ -83,20 +91,17 @@ void leave_long_gaps(const Clip& take, double seconds, Denoised& result) {
       Index last = first;
       while (last < take.frames() && lacks(last)) ++last;
       if (static_cast<double>(last - first) > seconds * take.frame_rate) {
-        clear(result.clip.samples, observed, first, last, joint);
-        if (result.sigma) clear(result.sigma->samples, observed, first, last, joint);
+        clear(result.motion, observed, first, last, joint);
+        if (result.sigma) clear(*result.sigma, observed, first, last, joint);
       }
       first = last;
     }
   }
 }
 
-void keep_observed(const Clip& take, Denoised& result) {
-  const Mask trusted = trusted_samples(take, result);
-  Matrix& motion = result.clip.samples;
-  motion = trusted.select(take.samples.array(), motion.array()).matrix();
-  Matrix& outliers = result.outliers.samples;
-  outliers = trusted.select(0.0, outliers.array()).matrix();
+void keep_observed(const Recording& take, const Mask& trusted, Denoised& result) {
+  result.motion = trusted.select(take.samples, result.motion);
+  result.outliers = trusted.select(0, result.outliers);
 }
 
 }  // namespace moclean

@@ -5,13 +5,13 @@
 namespace moclean {
 namespace {
 
-bool never_observed(const Clip& take, Index column) {
+bool never_observed(const Recording& take, Index column) {
   return take.samples.col(column).array().isNaN().all();
 }
 
 }  // namespace
 
-std::vector<std::string> unobserved_columns(const Clip& take) {
+std::vector<std::string> unobserved_columns(const Recording& take) {
   std::vector<std::string> names;
   for (Index column = 0; column < take.samples.cols(); ++column)
     if (never_observed(take, column))
@@ -19,13 +19,13 @@ std::vector<std::string> unobserved_columns(const Clip& take) {
   return names;
 }
 
-void leave_unobserved(const Clip& take, Denoised& result) {
+void leave_unobserved(const Recording& take, Denoised& result) {
   result.unobserved = unobserved_columns(take);
   if (result.unobserved.empty()) return;
   for (Index column = 0; column < take.samples.cols(); ++column) {
     if (!never_observed(take, column)) continue;
-    result.clip.samples.col(column).setConstant(std::numeric_limits<double>::quiet_NaN());
-    result.outliers.samples.col(column).setZero();
+    result.motion.col(column).setConstant(std::numeric_limits<double>::quiet_NaN());
+    result.outliers.col(column).setZero();
   }
 }
 

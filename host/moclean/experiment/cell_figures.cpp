@@ -42,24 +42,15 @@ Measured measured(const ExperimentTake& take) {
   return result;
 }
 
-Clip columns_of(const Clip& clip, const std::vector<Index>& columns) {
-  Clip part{.samples = clip.samples(Eigen::all, columns),
-            .columns = {},
-            .frame_rate = clip.frame_rate,
-            .unit = clip.unit};
-  for (const Index c : columns) part.columns.push_back(clip.columns[static_cast<std::size_t>(c)]);
-  return part;
-}
-
 }  // namespace
 
 std::map<std::string, double, std::less<>> cell_figures(const ExperimentTake& take,
                                                         const Mask& touched,
                                                         const Denoised& estimate) {
   const auto [columns, parents] = measured(take);
-  const Clip truth = columns_of(take.clip, columns);
-  const Clip cleaned = columns_of(estimate.clip, columns);
-  const Clip outliers = columns_of(estimate.outliers, columns);
+  const Recording truth = columns_of(take.clip, columns);
+  const Recording cleaned = columns_of(like(take.clip, estimate.motion), columns);
+  const Matrix outliers = estimate.outliers(Eigen::all, columns);
   const Mask mask = touched(Eigen::all, columns);
 
   std::map<std::string, double, std::less<>> values;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "moclean/denoise/chain.hpp"
-#include "moclean/motion/clip.hpp"
+#include "moclean/motion/recording.hpp"
 #include "moclean/noise/noise.hpp"
 
 namespace moclean {
@@ -18,7 +18,7 @@ struct ExperimentTake {
   std::string name;                   ///< of the file, without folder and extension
   std::string label;                  ///< in tables; no two takes of an experiment share one
   std::filesystem::path file;         ///< where it is from
-  Clip clip;                          ///< the truth, every sample of it
+  Recording clip;                     ///< the truth, every sample of it
   std::vector<int> parents = {};      ///< see joint_parents(); empty: no bone lengths are measured
   std::vector<std::string> excluded;  ///< joints whose names hold one of these (any case) are
                                       ///< spoilt and cleaned, but not measured

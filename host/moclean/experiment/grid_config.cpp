@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <sstream>
 
+#include "moclean/core/usable.hpp"
 #include "moclean/experiment/toml_section.hpp"
-#include "moclean/io/file.hpp"
-#include "moclean/io/read_skeleton.hpp"
-#include "moclean/io/read_write.hpp"
+#include "moclean/formats/file.hpp"
+#include "moclean/formats/read_write.hpp"
 
 namespace moclean {
 namespace {
@@ -125,8 +125,8 @@ GridConfig config_of(const fs::path& file, const toml::table& table, const StepD
   return config;
 }
 
-Clip selected(const Clip& clip, const FrameSpan& frames, const GridTake& take,
-              const fs::path& config) {
+Recording selected(const Recording& clip, const FrameSpan& frames, const GridTake& take,
+                   const fs::path& config) {
   const Index first = frames.first.value_or(0), last = frames.last.value_or(clip.frames());
   if (first >= last || last > clip.frames())
     throw FileError(config, take.line,
@@ -135,35 +135,21 @@ Clip selected(const Clip& clip, const FrameSpan& frames, const GridTake& take,
   return cut(clip, first, last);
 }
 
-// Every so many frames, from the first.
-Clip thinned(const Clip& clip, Index every) {
-  if (every == 1) return clip;
-  const Index kept = (clip.frames() - 1) / every + 1;
-  return {.samples = clip.samples(Eigen::seqN(0, kept, every), Eigen::all),
-          .columns = clip.columns,
-          .frame_rate = clip.frame_rate / static_cast<double>(every),
-          .unit = clip.unit};
-}
-
 ExperimentTake read_take(const GridTake& take, const FrameSpan& frames, const fs::path& config) {
-  const ReadOptions options{.skeleton = take.skeleton, .rate = take.rate};
-  ExperimentTake result{.name = take.file.stem().string(),
-                        .label = take.label,
-                        .file = take.file,
-                        .clip = selected(read_clip(take.file, options), frames, take, config),
-                        .excluded = take.excluded};
-  for (Index f = 0; f < result.clip.frames(); ++f)
-    for (Index c = 0; c < result.clip.samples.cols(); ++c)
-      if (!std::isfinite(result.clip.samples(f, c)))
-        throw FileError(take.file, fmt::format("frame {}, column {} is {}; a truth needs every "
-                                               "sample",
-                                               frames.first.value_or(0) + f,
-                                               result.clip.columns[static_cast<std::size_t>(c)],
-                                               result.clip.samples(f, c)));
-  result.clip = thinned(result.clip, take.thin);
-  if (const auto skeleton = read_skeleton(take.file, options))
-    result.parents = joint_parents(*skeleton, result.clip);
-  return result;
+  const Recording all = read_recording(take.file, {.skeleton = take.skeleton, .rate = take.rate});
+  const Recording part = selected(all, frames, take, config);
+  if (const auto place = first_unusable(part.samples, false, std::numeric_limits<double>::max()))
+    throw FileError(take.file, fmt::format("frame {}, column {} is {}; a truth needs every sample",
+                                           frames.first.value_or(0) + place->frame,
+                                           part.columns[static_cast<std::size_t>(place->column)],
+                                           part.samples(place->frame, place->column)));
+  const Recording thin = thinned(part, take.thin);
+  return {.name = take.file.stem().string(),
+          .label = take.label,
+          .file = take.file,
+          .clip = like(thin, thin.samples),
+          .parents = joint_parents(thin),
+          .excluded = take.excluded};
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "moclean/experiment/experiment.hpp"
-#include "moclean/io/line_log.hpp"
+#include "moclean/formats/line_log.hpp"
 
 namespace moclean {
 

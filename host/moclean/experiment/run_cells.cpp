@@ -25,7 +25,7 @@ struct Job {
 };
 
 // Noisy take, mask, the method's copy, its batch, A and E there and per take.
-std::uint64_t bytes_of(const Clip& clip) {
+std::uint64_t bytes_of(const Recording& clip) {
   return static_cast<std::uint64_t>(clip.samples.size()) * (7 * sizeof(double) + 1);
 }
 
@@ -88,15 +88,15 @@ class MethodRun {
     job.noisy = {};
   }
 
-  std::vector<Denoised> clean(const Chain& chain, std::span<const Clip> takes) const {
+  std::vector<Denoised> clean(const Chain& chain, std::span<const Recording> takes) const {
     if (!chain.empty())
       return ChainDenoiser(chain, run_.backend, run_.jobs)
           .denoise(takes, {.stop = run_.monitor.stop});
     std::vector<Denoised> as_they_are;
-    for (const Clip& take : takes) {
+    for (const Recording& take : takes) {
       Denoised& same = as_they_are.emplace_back();
-      same.clip = same.outliers = take;
-      same.outliers.samples.setZero();
+      same.motion = take.samples;
+      same.outliers.setZero(take.samples.rows(), take.samples.cols());
     }
     return as_they_are;
   }
@@ -104,7 +104,7 @@ class MethodRun {
   void call(std::span<Job> jobs) {
     const Chain& chain = experiment_.methods[cells_[jobs.front().place].method].chain;
     std::vector<Job*> members;
-    std::vector<Clip> takes;
+    std::vector<Recording> takes;
     for (Job& job : jobs) {
       const Cell& cell = cells_[job.place];
       job.noisy = corrupt(take_of(job).clip, experiment_.noises[cell.noise].noise, cell.noise_seed);
@@ -128,7 +128,7 @@ class MethodRun {
 
   CellResult measure(const Job& job, const Denoised& estimate) const {
     CellResult result{.figures = cell_figures(take_of(job), job.noisy.touched, estimate),
-                      .frames = estimate.clip.frames()};
+                      .frames = estimate.motion.rows()};
     result.figures["seconds"] = estimate.solve_seconds;
     result.unconverged = std::ranges::count_if(
         estimate.segments, [](const DenoisedSegment& s) { return fell_short(s.outcome); });

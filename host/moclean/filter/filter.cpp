@@ -11,22 +11,22 @@
 namespace moclean {
 namespace {
 
-void smooth_column(const Filter& filter, Clip& clip, Index column) {
-  std::vector<double> channel(static_cast<std::size_t>(clip.frames()));
-  Eigen::Map<Eigen::VectorXd> samples(channel.data(), clip.frames());
-  samples = clip.samples.col(column);
-  std::visit([&](const auto& f) { smooth(f, clip.frame_rate, channel); }, filter);
-  clip.samples.col(column) = samples;
+void smooth_column(const Filter& filter, double frame_rate, Matrix& samples, Index column) {
+  std::vector<double> channel(static_cast<std::size_t>(samples.rows()));
+  Eigen::Map<Eigen::VectorXd> values(channel.data(), samples.rows());
+  values = samples.col(column);
+  std::visit([&](const auto& f) { smooth(f, frame_rate, channel); }, filter);
+  samples.col(column) = values;
 }
 
-void require_usable(const Clip& clip, const Filter& filter) {
+void require_usable(const Recording& take, const Filter& filter) {
   std::visit([](const auto& f) { check(f); }, filter);
-  if (needs_frame_rate(filter) && !(clip.frame_rate > 0))
+  if (needs_frame_rate(filter) && !(take.frame_rate > 0))
     throw ArgumentError(fmt::format("{} needs the frame rate, which the recording does not state",
                                     name_of(filter)));
   if (const auto* low_pass = std::get_if<Butterworth>(&filter)) {
     double nothing[] = {0};
-    smooth(*low_pass, clip.frame_rate, nothing);  // throws here, and not on a thread
+    smooth(*low_pass, take.frame_rate, nothing);  // throws here, and not on a thread
   }
 }
 
@@ -52,16 +52,16 @@ std::string to_string(const Filter& filter) {
   return std::visit([](const auto& f) { return to_specification(f); }, filter);
 }
 
-Clip filtered(const Clip& clip, const Filter& filter, int jobs) {
-  require_usable(clip, filter);
-  Clip result = clip;
+Matrix filtered(const Recording& take, const Filter& filter, int jobs) {
+  require_usable(take, filter);
+  Matrix result = take.samples;
   std::atomic<Index> next = 0;
   const auto work = [&] {
-    for (Index c = next++; c < result.samples.cols(); c = next++) smooth_column(filter, result, c);
+    for (Index c = next++; c < result.cols(); c = next++)
+      smooth_column(filter, take.frame_rate, result, c);
   };
   std::vector<std::jthread> others;
-  for (Index t = 1; t < std::min<Index>(jobs, result.samples.cols()); ++t)
-    others.emplace_back(work);
+  for (Index t = 1; t < std::min<Index>(jobs, result.cols()); ++t) others.emplace_back(work);
   work();
   others.clear();
   return result;

@@ -12,7 +12,7 @@
 #include "moclean/filter/savitzky_golay.hpp"
 #include "moclean/filter/whittaker.hpp"
 #include "moclean/filter/window.hpp"
-#include "moclean/motion/clip.hpp"
+#include "moclean/motion/recording.hpp"
 
 namespace moclean {
 
@@ -38,9 +38,9 @@ std::string_view name_of(const Filter& filter);
 /// The specification it is read from, with every parameter.
 std::string to_string(const Filter& filter);
 
-/// Filters every column of a clip, on up to `jobs` threads; the result does not depend on them.
-/// Throws ArgumentError for parameters out of range, and for a clip without a frame rate if the
+/// Every column of a take filtered, on up to `jobs` threads; the result does not depend on them.
+/// Throws ArgumentError for parameters out of range, and for a take without a frame rate if the
 /// filter needs one.
-Clip filtered(const Clip& clip, const Filter& filter, int jobs = 1);
+Matrix filtered(const Recording& take, const Filter& filter, int jobs = 1);
 
 }  // namespace moclean

@@ -19,7 +19,7 @@ Value rmse(const Evaluation& e, bool touched) {
 
 std::optional<Detection> detected(const Evaluation& e) {
   if (!e.touched || !e.outliers) return std::nullopt;
-  return detection(*e.touched, e.outliers->samples, e.outlier_threshold);
+  return detection(*e.touched, *e.outliers, e.outlier_threshold);
 }
 
 constexpr std::string_view length = "length", per_frame = "length/frame^2", share = "";

@@ -4,16 +4,16 @@
 #include <span>
 #include <string_view>
 
-#include "moclean/motion/clip.hpp"
+#include "moclean/motion/recording.hpp"
 
 namespace moclean {
 
 /// What an estimate is measured with. Everything but the two clips may be left out.
 struct Evaluation {
-  const Clip& truth;
-  const Clip& estimate;
+  const Recording& truth;
+  const Recording& estimate;
   const Mask* touched = nullptr;      ///< what noise had touched
-  const Clip* outliers = nullptr;     ///< what the method took away
+  const Matrix* outliers = nullptr;   ///< what the method took away
   std::span<const int> parents = {};  ///< of the joints, see bone_length_error()
   double outlier_threshold = 0;       ///< see detection()
 };

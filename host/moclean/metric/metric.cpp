@@ -48,7 +48,7 @@ Differences checked_differences(const ConstMatrixRef& truth, const ConstMatrixRe
 
 }  // namespace
 
-Comparison compare(const Clip& truth, const Clip& estimate) {
+Comparison compare(const Recording& truth, const Recording& estimate) {
   const Differences all = checked_differences(truth.samples, estimate.samples);
 
   Comparison result;

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "moclean/motion/clip.hpp"
+#include "moclean/motion/recording.hpp"
 
 namespace moclean {
 
@@ -27,7 +27,7 @@ struct Comparison {
 
 /// Compares two clips of equal shape. Throws ShapeError if the shapes differ or if there is no
 /// entry that both have observed.
-Comparison compare(const Clip& truth, const Clip& estimate);
+Comparison compare(const Recording& truth, const Recording& estimate);
 
 /// FD of equation (8) alone, [frames x columns] each. NaN entries count in neither sum nor size.
 /// Throws as compare().

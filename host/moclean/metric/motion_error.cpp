@@ -32,13 +32,13 @@ double mean_norm(const Matrix& differences, const std::vector<Joint>& joints) {
   return norms.mean();
 }
 
-double distance(const Clip& clip, Index frame, const Joint& a, const Joint& b) {
+double distance(const Recording& clip, Index frame, const Joint& a, const Joint& b) {
   const auto row = clip.samples.row(frame);
   return (row.segment<3>(a.first_column) - row.segment<3>(b.first_column)).norm();
 }
 
 // Y_{f-1} - 2 Y_f + Y_{f+1}, the first and the last frame repeated.
-double second_difference(const Clip& clip, Index frame, Index column) {
+double second_difference(const Recording& clip, Index frame, Index column) {
   const auto y = clip.samples.col(column);
   const Index before = std::max<Index>(frame - 1, 0);
   const Index after = std::min(frame + 1, clip.frames() - 1);
@@ -47,17 +47,17 @@ double second_difference(const Clip& clip, Index frame, Index column) {
 
 }  // namespace
 
-double position_error(const Clip& truth, const Clip& estimate) {
+double position_error(const Recording& truth, const Recording& estimate) {
   require_same_shape(truth.samples, estimate.samples);
   return mean_norm(estimate.samples - truth.samples, joints(truth));
 }
 
-double worst_displacement(const Clip& truth, const Clip& estimate) {
+double worst_displacement(const Recording& truth, const Recording& estimate) {
   require_same_shape(truth.samples, estimate.samples);
   double worst = std::nan("");
   for (const Joint& joint : joints(truth))
     for (Index f = 0; f < truth.frames(); ++f) {
-      const auto row = [&](const Clip& clip) {
+      const auto row = [&](const Recording& clip) {
         return clip.samples.row(f).segment(joint.first_column, joint.columns);
       };
       worst = std::fmax(worst, (row(estimate) - row(truth)).norm());  // leaves NaN out
@@ -65,7 +65,7 @@ double worst_displacement(const Clip& truth, const Clip& estimate) {
   return worst;
 }
 
-double li_position_error(const Clip& truth, const Clip& estimate) {
+double li_position_error(const Recording& truth, const Recording& estimate) {
   require_same_shape(truth.samples, estimate.samples);
   Sum squares;
   for (Index i = 0; i < truth.samples.size(); ++i) {
@@ -75,7 +75,8 @@ double li_position_error(const Clip& truth, const Clip& estimate) {
   return std::sqrt(squares.total) / static_cast<double>(squares.count);
 }
 
-double bone_length_error(const Clip& truth, const Clip& estimate, std::span<const int> parents) {
+double bone_length_error(const Recording& truth, const Recording& estimate,
+                         std::span<const int> parents) {
   require_same_shape(truth.samples, estimate.samples);
   const std::vector<Joint> all = joints(truth);
   if (parents.size() != all.size())
@@ -95,7 +96,7 @@ double bone_length_error(const Clip& truth, const Clip& estimate, std::span<cons
   return errors.mean();
 }
 
-double smoothness_error(const Clip& clip) {
+double smoothness_error(const Recording& clip) {
   Sum squares;
   for (Index f = 0; f < clip.frames(); ++f)
     for (Index c = 0; c < clip.samples.cols(); ++c) {
@@ -107,7 +108,7 @@ double smoothness_error(const Clip& clip) {
   return std::sqrt(squares.total) / static_cast<double>(squares.count + rows_of_zeros);
 }
 
-double acceleration_error(const Clip& truth, const Clip& estimate) {
+double acceleration_error(const Recording& truth, const Recording& estimate) {
   require_same_shape(truth.samples, estimate.samples);
   const Index inner = truth.frames() - 2;
   if (inner < 1) return std::nan("");

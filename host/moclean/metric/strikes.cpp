@@ -14,7 +14,7 @@ constexpr std::size_t peaks = 10;
 constexpr double apart = 0.1;  // seconds
 
 // The size of a joint's second difference about a frame that is neither first nor last.
-double acceleration(const Clip& clip, Index frame, const Joint& joint) {
+double acceleration(const Recording& clip, Index frame, const Joint& joint) {
   const auto position = [&](Index f) {
     return clip.samples.row(f).segment(joint.first_column, joint.columns);
   };
@@ -33,7 +33,7 @@ struct Peak {
   }
 };
 
-std::vector<Peak> largest(const Clip& clip, const std::vector<Joint>& all) {
+std::vector<Peak> largest(const Recording& clip, const std::vector<Joint>& all) {
   std::vector<Peak> candidates, chosen;
   for (std::size_t j = 0; j < all.size(); ++j)
     for (Index f = 1; f + 1 < clip.frames(); ++f)
@@ -56,7 +56,7 @@ std::vector<Peak> largest(const Clip& clip, const std::vector<Joint>& all) {
 
 }  // namespace
 
-double strikes_kept(const Clip& truth, const Clip& estimate) {
+double strikes_kept(const Recording& truth, const Recording& estimate) {
   require_same_shape(truth.samples, estimate.samples);
   if (!(truth.frame_rate > 0)) return std::nan("");
   const std::vector<Joint> all = joints(truth);

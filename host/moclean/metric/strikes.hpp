@@ -1,6 +1,6 @@
 #pragma once
 
-#include "moclean/motion/clip.hpp"
+#include "moclean/motion/recording.hpp"
 
 namespace moclean {
 
@@ -11,6 +11,6 @@ namespace moclean {
 /// Peaks that the estimate leaves missing, and those of size zero, take part in neither sum nor
 /// number; NaN where nothing is left. Needs the truth's frame rate: NaN without. Throws ShapeError
 /// for clips of different shapes.
-double strikes_kept(const Clip& truth, const Clip& estimate);
+double strikes_kept(const Recording& truth, const Recording& estimate);
 
 }  // namespace moclean

@@ -167,25 +167,4 @@ Matrix forward_kinematics(const Skeleton& skeleton, const Matrix& motion) {
   return positions;
 }
 
-Clip joint_positions(const SkeletonMotion& motion) {
-  Clip clip;
-  clip.samples = forward_kinematics(motion.skeleton, motion.channels);
-  for (const Bone& bone : motion.skeleton.bones)
-    for (const char* axis : {".x", ".y", ".z"}) clip.columns.push_back(bone.name + axis);
-  clip.frame_rate = motion.frame_rate;
-  clip.unit = motion.unit;
-  return clip;
-}
-
-std::vector<int> joint_parents(const Skeleton& skeleton, const Clip& clip) {
-  const bool are_same =
-      std::ranges::equal(joints(clip), skeleton.bones, [](const Joint& joint, const Bone& bone) {
-        return joint.columns == 3 && joint.name == bone.name;
-      });
-  std::vector<int> parents;
-  if (!are_same) return parents;
-  for (const Bone& bone : skeleton.bones) parents.push_back(bone.parent);
-  return parents;
-}
-
 }  // namespace moclean

@@ -1,12 +1,12 @@
 #pragma once
 
+#include <any>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "moclean/core/matrix.hpp"
-#include "moclean/motion/clip.hpp"
 
 namespace moclean {
 
@@ -51,18 +51,12 @@ struct SkeletonMotion {
   Matrix channels;        ///< [frames x skeleton.channels()], translations in file units, radians
   double frame_rate = 0;  ///< Hz; 0 where unknown
   std::string unit;       ///< of lengths; empty where the file does not state it
+  std::any source = {};   ///< see Recording::source
 };
 
 /// Joint positions of every frame, [frames x 3 bones], in the unit of the skeleton's offsets.
 /// `motion` is [frames x channels()]: translations in file units, rotations in radians.
 /// Throws ShapeError if its width differs from channels(), or if a parent stands after its child.
 Matrix forward_kinematics(const Skeleton& skeleton, const Matrix& motion);
-
-/// The joint positions of a motion as a clip, columns named after the bones.
-Clip joint_positions(const SkeletonMotion& motion);
-
-/// Per joint of joints(clip) the joint it hangs on, -1 for a root. Empty unless the joints are the
-/// skeleton's bones: as many, three columns each, under the same names in the same order.
-std::vector<int> joint_parents(const Skeleton& skeleton, const Clip& clip);
 
 }  // namespace moclean

@@ -5,9 +5,9 @@
 
 namespace moclean {
 
-/// How many millimetres a length unit is, named as Clip::unit names it: mm, cm, m, or "ASF units",
-/// which are 2.54 cm / 0.45 = 56.44 mm in the files of CMU and HDM05 (`length 0.45`, an inch).
-/// Nothing for any other.
+/// How many millimetres a length unit is, named as Recording::unit names it: mm, cm, m, or "ASF
+/// units", which are 2.54 cm / 0.45 = 56.44 mm in the files of CMU and HDM05 (`length 0.45`, an
+/// inch). Nothing for any other.
 std::optional<double> millimetres(std::string_view unit);
 
 }  // namespace moclean

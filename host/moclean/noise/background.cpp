@@ -69,7 +69,7 @@ struct LowPass {
   }
 };
 
-Mask observed(const Clip& clip) { return !clip.samples.array().isNaN(); }
+Mask observed(const Recording& clip) { return !clip.samples.array().isNaN(); }
 
 }  // namespace
 
@@ -85,7 +85,7 @@ void check(const White& noise) {
   if (noise.unit_mm) require_positive(White::name, "unit-mm", noise.unit_mm);
 }
 
-Mask add_noise(const Jitter& noise, Random& random, Clip& clip) {
+Mask add_noise(const Jitter& noise, Random& random, Recording& clip) {
   check(noise);
   const double rate = clip.frame_rate, cutoff = *noise.cutoff;
   if (!(rate > 0))
@@ -103,7 +103,7 @@ Mask add_noise(const Jitter& noise, Random& random, Clip& clip) {
   return observed(clip);
 }
 
-Mask add_noise(const Round& noise, Random&, Clip& clip) {
+Mask add_noise(const Round& noise, Random&, Recording& clip) {
   check(noise);
   for (Index f = 0; f < clip.frames(); ++f)
     for (double& x : clip.samples.row(f))
@@ -111,7 +111,7 @@ Mask add_noise(const Round& noise, Random&, Clip& clip) {
   return observed(clip);
 }
 
-Mask add_noise(const White& noise, Random& random, Clip& clip) {
+Mask add_noise(const White& noise, Random& random, Recording& clip) {
   check(noise);
   const std::optional<double> unit = noise.unit_mm ? noise.unit_mm : millimetres(clip.unit);
   if (!unit)

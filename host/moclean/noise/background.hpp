@@ -5,7 +5,7 @@
 
 #include "moclean/core/parameters.hpp"
 #include "moclean/core/random.hpp"
-#include "moclean/motion/clip.hpp"
+#include "moclean/motion/recording.hpp"
 
 namespace moclean {
 
@@ -62,8 +62,8 @@ void check(const White& noise);
 /// Adds the noise to the clip's samples; touched is every observed entry, as for Gaussian. NaN
 /// stays NaN and untouched; draws do not depend on the samples. Throws ArgumentError if the frame
 /// rate or the unit that the noise needs is unknown, or if the cut-off does not fit the rate.
-Mask add_noise(const Jitter& noise, Random& random, Clip& clip);
-Mask add_noise(const Round& noise, Random& random, Clip& clip);
-Mask add_noise(const White& noise, Random& random, Clip& clip);
+Mask add_noise(const Jitter& noise, Random& random, Recording& clip);
+Mask add_noise(const Round& noise, Random& random, Recording& clip);
+Mask add_noise(const White& noise, Random& random, Recording& clip);
 
 }  // namespace moclean

@@ -67,14 +67,14 @@ double deviation_of(double snr, const Matrix& samples) {
   return ratio * std::sqrt(squares / static_cast<double>(count));
 }
 
-Mask add_noise(const Gaussian& noise, Random& random, Clip& clip) {
+Mask add_noise(const Gaussian& noise, Random& random, Recording& clip) {
   check(noise);
   const double sd = noise.sd ? *noise.sd : deviation_of(*noise.snr, clip.samples);
   add_gaussian(sd, random, clip.samples);
   return !clip.samples.array().isNaN();
 }
 
-Mask add_noise(const Dropout& noise, Random& random, Clip& clip) {
+Mask add_noise(const Dropout& noise, Random& random, Recording& clip) {
   check(noise);
   Matrix& samples = clip.samples;
   const std::vector<Joint> all = joints(clip);

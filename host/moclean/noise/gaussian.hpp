@@ -6,7 +6,7 @@
 
 #include "moclean/core/parameters.hpp"
 #include "moclean/core/random.hpp"
-#include "moclean/motion/clip.hpp"
+#include "moclean/motion/recording.hpp"
 
 namespace moclean {
 
@@ -60,8 +60,8 @@ void check(const Dropout& noise);
 /// Adds the noise to the clip's samples and returns the entries it touched: every one of Gaussian,
 /// those of vanished joints of Dropout, whose background counts as untouched. NaN stays NaN and
 /// untouched. Draws do not depend on the samples.
-Mask add_noise(const Gaussian& noise, Random& random, Clip& clip);
-Mask add_noise(const Dropout& noise, Random& random, Clip& clip);
+Mask add_noise(const Gaussian& noise, Random& random, Recording& clip);
+Mask add_noise(const Dropout& noise, Random& random, Recording& clip);
 
 /// Standard deviation of noise of this ratio to the motion in the samples, see Gaussian.
 double deviation_of(double snr, const Matrix& samples);

@@ -57,7 +57,7 @@ std::string to_string(const GaussianFrames& noise) {
 }
 
 // X^ = X + G(mean, sd) .* (1 - ((U(0, 1) - 0.5) > 0)) on the chosen frames.
-Mask add_noise(const GaussianFrames& noise, Random& random, Clip& clip) {
+Mask add_noise(const GaussianFrames& noise, Random& random, Recording& clip) {
   check(noise);
   Matrix& samples = clip.samples;
   Mask touched = Mask::Constant(samples.rows(), samples.cols(), false);

@@ -5,7 +5,7 @@
 
 #include "moclean/core/random.hpp"
 #include "moclean/core/specification.hpp"
-#include "moclean/motion/clip.hpp"
+#include "moclean/motion/recording.hpp"
 
 namespace moclean {
 
@@ -31,6 +31,6 @@ std::string to_string(const GaussianFrames& noise);
 /// they are. Every entry of a chosen frame consumes its draws whatever it holds, so the noise does
 /// not depend on the samples. Throws ArgumentError if a parameter is out of range or there are
 /// fewer frames than asked for.
-Mask add_noise(const GaussianFrames& noise, Random& random, Clip& clip);
+Mask add_noise(const GaussianFrames& noise, Random& random, Recording& clip);
 
 }  // namespace moclean

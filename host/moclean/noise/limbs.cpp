@@ -27,7 +27,7 @@ std::optional<std::size_t> counterpart(const std::string& name,
   return std::nullopt;
 }
 
-std::vector<LimbPair> require_limb_pairs(std::string_view noise, const Clip& clip) {
+std::vector<LimbPair> require_limb_pairs(std::string_view noise, const Recording& clip) {
   std::vector<LimbPair> limbs = limb_pairs(clip);
   if (limbs.empty())
     throw ArgumentError(fmt::format(
@@ -43,7 +43,7 @@ void exchange(Matrix& samples, Index frame, Index one, Index two) {
 }
 
 // The joints that drift.
-std::vector<Joint> drifting(const InertialDrift& noise, Random& random, const Clip& clip) {
+std::vector<Joint> drifting(const InertialDrift& noise, Random& random, const Recording& clip) {
   std::vector<Joint> chosen;
   if (noise.of == InertialDrift::Of::body) {
     chosen = joints(clip);
@@ -70,7 +70,7 @@ double deviation_of_sum(Index n, double a) {
 
 }  // namespace
 
-std::vector<LimbPair> limb_pairs(const Clip& clip) {
+std::vector<LimbPair> limb_pairs(const Recording& clip) {
   const std::vector<Joint> all = joints(clip);
   std::map<std::string, std::size_t> places;
   for (std::size_t j = 0; j < all.size(); ++j) places.emplace(all[j].name, j);
@@ -97,7 +97,7 @@ void check(const InertialDrift& noise) {
     throw ArgumentError(fmt::format("inertial-drift: sd is {}, expected at least 0", *noise.sd));
 }
 
-Mask add_noise(const LimbSwap& noise, Random& random, Clip& clip) {
+Mask add_noise(const LimbSwap& noise, Random& random, Recording& clip) {
   check(noise);
   const std::vector<LimbPair> limbs = require_limb_pairs(LimbSwap::name, clip);
   const auto count = static_cast<Index>(limbs.size());
@@ -116,7 +116,7 @@ Mask add_noise(const LimbSwap& noise, Random& random, Clip& clip) {
 
 // v_0 ~ N(0, 1), v_{t+1} = a v_t + sqrt(1 - a^2) N(0, 1), a = exp(-1 / (rate tau)); the offset of
 // frame t is sd times v_0 + .. + v_{t-1} over the standard deviation of the whole sum.
-Mask add_noise(const InertialDrift& noise, Random& random, Clip& clip) {
+Mask add_noise(const InertialDrift& noise, Random& random, Recording& clip) {
   check(noise);
   if (!(clip.frame_rate > 0))
     throw ArgumentError(

@@ -18,7 +18,7 @@ using LimbPair = std::vector<std::pair<Joint, Joint>>;
 /// limb is made of pairs whose left joints follow one another in the clip, directly or with only
 /// the right one between them (`lhip lknee rhip rknee` and `lhip rhip lknee rknee` are one limb
 /// each).
-std::vector<LimbPair> limb_pairs(const Clip& clip);
+std::vector<LimbPair> limb_pairs(const Recording& clip);
 
 /// The left and the right limb change places throughout a run, the whole chain, as when an
 /// estimator of poses takes one for the other. Limbs that come in pairs are equally likely;
@@ -61,7 +61,7 @@ void check(const InertialDrift& noise);
 /// Spoils the clip's samples and returns the entries that were changed. NaN stays NaN and
 /// untouched; draws do not depend on the samples. Throws ArgumentError if there are no limbs in
 /// pairs, a run is longer than the clip, or the frame rate that the drift needs is unknown.
-Mask add_noise(const LimbSwap& noise, Random& random, Clip& clip);
-Mask add_noise(const InertialDrift& noise, Random& random, Clip& clip);
+Mask add_noise(const LimbSwap& noise, Random& random, Recording& clip);
+Mask add_noise(const InertialDrift& noise, Random& random, Recording& clip);
 
 }  // namespace moclean

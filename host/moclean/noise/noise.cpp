@@ -54,11 +54,11 @@ std::string to_string(const NoiseChain& chain) {
   return text;
 }
 
-Corrupted corrupt(const Clip& clip, const Noise& noise, std::uint64_t seed) {
+Corrupted corrupt(const Recording& clip, const Noise& noise, std::uint64_t seed) {
   return corrupt(clip, NoiseChain{noise}, seed);
 }
 
-Corrupted corrupt(const Clip& clip, const NoiseChain& chain, std::uint64_t seed) {
+Corrupted corrupt(const Recording& clip, const NoiseChain& chain, std::uint64_t seed) {
   if (chain.empty()) throw ArgumentError("a chain needs at least one noise");
   Corrupted result{clip, Mask::Constant(clip.samples.rows(), clip.samples.cols(), false)};
   Random random(seed);

@@ -6,7 +6,7 @@
 #include <variant>
 #include <vector>
 
-#include "moclean/motion/clip.hpp"
+#include "moclean/motion/recording.hpp"
 #include "moclean/noise/background.hpp"
 #include "moclean/noise/gaussian.hpp"
 #include "moclean/noise/gaussian_frames.hpp"
@@ -41,17 +41,17 @@ std::string to_string(const NoiseChain& chain);
 /// A noisy clip and what the noise touched: its gross errors, which a method ought to find. Entries
 /// that were NaN count as untouched, and so does what the model calls background (see each).
 struct Corrupted {
-  Clip clip;
+  Recording clip;
   Mask touched;  ///< [frames x columns]
 };
 
 /// Adds noise; the same clip, noise and seed give the same bits on every platform.
 /// NaN entries stay NaN. Throws ArgumentError if a parameter is out of range or the noise does not
 /// fit the clip (more frames than it has).
-Corrupted corrupt(const Clip& clip, const Noise& noise, std::uint64_t seed);
+Corrupted corrupt(const Recording& clip, const Noise& noise, std::uint64_t seed);
 
 /// The same for a chain, whose noises share one sequence of random numbers. Touched is what any of
 /// them touched. Throws ArgumentError for an empty chain, too.
-Corrupted corrupt(const Clip& clip, const NoiseChain& chain, std::uint64_t seed);
+Corrupted corrupt(const Recording& clip, const NoiseChain& chain, std::uint64_t seed);
 
 }  // namespace moclean

@@ -22,7 +22,7 @@ Mask nothing_touched(const Matrix& samples) {
 
 // Displaces joints; share(t) of the run's vector is added in its frame t = 0, 1 ...
 template <class Share>
-Mask displace(std::string_view name, const Runs& runs, double sd, Random& random, Clip& clip,
+Mask displace(std::string_view name, const Runs& runs, double sd, Random& random, Recording& clip,
               const Share& share) {
   const std::vector<Joint> all = joints(clip);
   const auto count = static_cast<Index>(all.size());
@@ -44,7 +44,7 @@ Mask displace(std::string_view name, const Runs& runs, double sd, Random& random
 }
 
 // Joints that may change places with one another.
-std::vector<Joint> exchangeable(const Clip& clip) {
+std::vector<Joint> exchangeable(const Recording& clip) {
   std::vector<Joint> points, channels;
   for (const Joint& joint : joints(clip)) {
     if (joint.columns == 3) points.push_back(joint);
@@ -101,19 +101,19 @@ void check(const Ramp& noise) {
   check_deviation(Ramp::name, noise.sd);
 }
 
-Mask add_noise(const Burst& noise, Random& random, Clip& clip) {
+Mask add_noise(const Burst& noise, Random& random, Recording& clip) {
   check(noise);
   return displace(Burst::name, noise.runs, noise.sd, random, clip, [](Index) { return 1.0; });
 }
 
-Mask add_noise(const Drift& noise, Random& random, Clip& clip) {
+Mask add_noise(const Drift& noise, Random& random, Recording& clip) {
   check(noise);
   return displace(Drift::name, noise.runs, noise.sd, random, clip, [&](Index t) {
     return static_cast<double>(t + 1) / static_cast<double>(noise.runs.length);
   });
 }
 
-Mask add_noise(const Ramp& noise, Random& random, Clip& clip) {
+Mask add_noise(const Ramp& noise, Random& random, Recording& clip) {
   check(noise);
   const Index length = noise.runs.length, rising = length / 3;
   return displace(Ramp::name, noise.runs, noise.sd, random, clip, [&](Index t) {
@@ -122,7 +122,7 @@ Mask add_noise(const Ramp& noise, Random& random, Clip& clip) {
   });
 }
 
-Mask add_noise(const Gap& noise, Random& random, Clip& clip) {
+Mask add_noise(const Gap& noise, Random& random, Recording& clip) {
   check(noise);
   const std::vector<Joint> all = joints(clip);
   const auto count = static_cast<Index>(all.size());
@@ -136,7 +136,7 @@ Mask add_noise(const Gap& noise, Random& random, Clip& clip) {
   return observed && clip.samples.array().isNaN();
 }
 
-Mask add_noise(const Swap& noise, Random& random, Clip& clip) {
+Mask add_noise(const Swap& noise, Random& random, Recording& clip) {
   check(noise);
   const std::vector<Joint> all = exchangeable(clip);
   const auto count = static_cast<Index>(all.size());

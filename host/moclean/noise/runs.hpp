@@ -5,7 +5,7 @@
 
 #include "moclean/core/parameters.hpp"
 #include "moclean/core/random.hpp"
-#include "moclean/motion/clip.hpp"
+#include "moclean/motion/recording.hpp"
 
 namespace moclean {
 
@@ -117,10 +117,10 @@ void check(const Ramp& noise);
 /// Spoils the clip's samples and returns the entries that were touched. NaN stays NaN and
 /// untouched; draws do not depend on the samples. Throws ArgumentError if a run is longer than the
 /// clip, or if there are no two joints to swap.
-Mask add_noise(const Burst& noise, Random& random, Clip& clip);
-Mask add_noise(const Gap& noise, Random& random, Clip& clip);
-Mask add_noise(const Swap& noise, Random& random, Clip& clip);
-Mask add_noise(const Drift& noise, Random& random, Clip& clip);
-Mask add_noise(const Ramp& noise, Random& random, Clip& clip);
+Mask add_noise(const Burst& noise, Random& random, Recording& clip);
+Mask add_noise(const Gap& noise, Random& random, Recording& clip);
+Mask add_noise(const Swap& noise, Random& random, Recording& clip);
+Mask add_noise(const Drift& noise, Random& random, Recording& clip);
+Mask add_noise(const Ramp& noise, Random& random, Recording& clip);
 
 }  // namespace moclean

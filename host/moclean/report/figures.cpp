@@ -38,7 +38,7 @@ MeanSquare mean_square(const Matrix& matrix) {
   return sum;
 }
 
-void require_shape(const Clip& clip, const Clip& noisy, const char* what) {
+void require_shape(const Recording& clip, const Recording& noisy, const char* what) {
   if (clip.samples.rows() == noisy.samples.rows() && clip.samples.cols() == noisy.samples.cols())
     return;
   throw ShapeError(fmt::format(
@@ -47,7 +47,7 @@ void require_shape(const Clip& clip, const Clip& noisy, const char* what) {
 }
 
 void require_shapes(const ReportTake& take) {
-  const Clip& noisy = take.noisy;
+  const Recording& noisy = take.noisy;
   if (noisy.samples.size() == 0) throw ShapeError("the take of a report is empty");
   if (static_cast<Index>(noisy.columns.size()) != noisy.samples.cols())
     throw ShapeError(fmt::format("the take of a report names {} columns but has {}",
@@ -139,7 +139,7 @@ std::vector<ReportFigures::WorstFrame> worst_frames(const ReportTake& take, cons
 
 }  // namespace
 
-Matrix joint_corrections(const Clip& outliers) {
+Matrix joint_corrections(const Recording& outliers) {
   const std::vector<Joint> all = joints(outliers);
   Matrix corrections(outliers.frames(), static_cast<Index>(all.size()));
   for (Index f = 0; f < outliers.frames(); ++f)

@@ -54,7 +54,7 @@ ReportFigures figures(const ReportTake& take);
 
 /// |E| per frame and joint [frames x joints], Euclidean over the joint's columns; NaN where none of
 /// them is observed.
-Matrix joint_corrections(const Clip& outliers);
+Matrix joint_corrections(const Recording& outliers);
 
 /// One or two sentences: whether the take got better, as far as that can be told.
 std::string verdict(const ReportTake& take, const ReportFigures& figures);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -7,16 +8,17 @@
 #include <vector>
 
 #include "moclean/denoise/denoiser.hpp"
-#include "moclean/motion/clip.hpp"
+#include "moclean/motion/recording.hpp"
 
 namespace moclean {
 
 /// A take before and after cleaning.
 struct ReportTake {
-  Clip noisy;
-  Clip clean = {};                 ///< same shape and columns as `noisy`
-  std::optional<Clip> truth = {};  ///< same shape; the report then says whether the take got better
-  Clip outliers = {};              ///< E, same shape: what was taken away; NaN where there is a gap
+  Recording noisy;
+  Recording clean = {};  ///< same shape and columns as `noisy`
+  std::optional<Recording> truth =
+      {};                   ///< same shape; the report then says whether the take got better
+  Recording outliers = {};  ///< E, same shape: what was taken away; NaN where there is a gap
   std::vector<int> parents =
       {};  ///< per joint of joints(noisy): the joint it hangs on, -1 for a root;
            ///< empty: no skeleton, joints are drawn as a cloud of points
@@ -56,5 +58,8 @@ void require_report();
 /// the page. Throws as require_report(), and ShapeError if the parts of a take, or the rows of a
 /// table, do not fit together.
 std::string html(const Report& report);
+
+/// Copies of a take's samples that its text takes.
+inline constexpr std::uint64_t copies_in_text = 4;
 
 }  // namespace moclean

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/core/usable.hpp"
 
 namespace moclean {
 namespace {
@@ -12,19 +13,16 @@ namespace {
 void require_entries(const SegmentBatch& data, bool missing_accepted) {
   for (Index b = 0; b < data.segments(); ++b) {
     const ConstMatrixView segment = data.segment(b);
-    for (Index i = 0; i < segment.rows(); ++i)
-      for (Index j = 0; j < segment.cols(); ++j) {
-        const double entry = segment(i, j);
-        if (std::abs(entry) <= largest_entry) continue;
-        if (missing_accepted && std::isnan(entry)) continue;
-        if (std::isfinite(entry))
-          throw ShapeError(fmt::format(
-              "segment {}: {} at row {}, column {} is too large (at most {} in magnitude)", b,
-              entry, i, j, largest_entry));
-        throw ShapeError(fmt::format(
-            "segment {}: not finite at row {}, column {}{}", b, i, j,
-            missing_accepted ? "" : " (missing samples are not supported by this method)"));
-      }
+    const auto place = first_unusable(segment, missing_accepted, largest_entry);
+    if (!place) continue;
+    const auto [i, j] = *place;
+    if (std::isfinite(segment(i, j)))
+      throw ShapeError(
+          fmt::format("segment {}: {} at row {}, column {} is too large (at most {} in magnitude)",
+                      b, segment(i, j), i, j, largest_entry));
+    throw ShapeError(
+        fmt::format("segment {}: not finite at row {}, column {}{}", b, i, j,
+                    missing_accepted ? "" : " (missing samples are not supported by this method)"));
   }
 }
 

@@ -87,6 +87,16 @@ void require_finite(const SegmentBatch& data);
 /// anything.
 void require_usable(const Problem& problem, const Method& method);
 
+/// What decides how work is best put together for a backend. No result depends on it.
+struct BackendTraits {
+  Index least_segments = 64;  ///< at once, to keep it busy
+  Index full_segments = 64;   ///< at once, beyond which it gets no faster; not below the least
+  bool mixed = false;         ///< some matrices are float: it agrees with others so far only
+};
+
+/// How many segments fill a compute unit or a thread of a backend.
+inline constexpr Index segments_per_unit = 32;
+
 /// Where a method is computed.
 class Backend {
  public:
@@ -94,6 +104,8 @@ class Backend {
 
   /// For reports: "reference (Eigen 3.4.0, 2 threads)", "opencl (<device>)".
   virtual std::string name() const = 0;
+
+  virtual BackendTraits traits() const { return {}; }
 
   /// Gets ready for a method: compiles its kernels, say. solve() does that otherwise when it meets
   /// the method first. Nothing is asked of the method's parameters.

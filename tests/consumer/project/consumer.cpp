@@ -1,24 +1,55 @@
-// Splits a small matrix, constant but for one gross error, into both parts; exits 0 if that worked.
+// Runs a job of two small takes, constant but for one gross error, in the folder that is given, and
+// a third that is no recording; exits 0 if both are cleaned and the third is told of.
 
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
+#include <fstream>
 
-#include <moclean/denoise/low_rank.hpp>
-#include <moclean/io/read_write.hpp>
+#include <moclean/formats/read_write.hpp>
+#include <moclean/run/engine.hpp>
 #include <moclean/solve/opencl/opencl_backend.hpp>
 #include <moclean/solve/reference/reference_backend.hpp>
 
-int main() {
-  moclean::SegmentBatch data(6, {0, 20});
-  data.segment(0).setConstant(3);
-  data.segment(0)(7, 2) += 50;
+namespace {
 
+moclean::Recording take() {
+  moclean::Recording clip{
+      moclean::Matrix::Constant(20, 6, 3), moclean::default_column_names(6), 0, {}};
+  clip.samples(7, 2) += 50;
+  return clip;
+}
+
+bool is_clean(const std::filesystem::path& file) {
+  return std::abs(moclean::read_recording(file).samples(7, 2) - 3) < 1e-4;
+}
+
+}  // namespace
+
+int main(int, char** arguments) {
+  const std::filesystem::path folder = arguments[1];
+  std::filesystem::create_directories(folder);
+  for (const char* name : {"1.csv", "3.csv"}) moclean::write_recording(folder / name, take());
+  std::ofstream(folder / "2.csv") << "a,b\n1,x\n";
+
+  moclean::Job job{.files = moclean::expand_folders({folder}),
+                   .chain = moclean::parse_chain("rpca")};
+  job.outputs = moclean::plan_outputs(
+      {.inputs = {folder}, .files = job.files, .output = folder / "clean", .format = "csv"});
+  job.on_failure = moclean::FailurePolicy::each_on_its_own;
+  int written = 0;
+  const auto count = [&](const moclean::RunEvent& event) {
+    written += std::holds_alternative<moclean::TakeWritten>(event);
+  };
   moclean::ReferenceBackend backend;
-  const moclean::Solution solution = backend.solve(data, moclean::RobustPca{});
+  const moclean::RunReport report = moclean::run_job(job, backend, count);
 
-  const double cleaned = solution.low_rank.segment(0)(7, 2);
-  const double error = solution.sparse.segment(0)(7, 2);
-  std::printf("%g = %g + %g, rank %d\n", 53.0, cleaned, error,
-              solution.segments[0].rank.value_or(0));
-  return std::abs(cleaned - 3) < 1e-4 && std::abs(error - 50) < 1e-4 ? 0 : 1;
+  for (const moclean::TakeReport& one : report.takes)
+    std::printf("%s: %s\n", one.file.c_str(),
+                one.failure.empty() ? "cleaned" : one.failure.c_str());
+  const bool told = !report.takes[1].failure.empty();
+  return written == 2 && told && is_clean(folder / "clean/1.csv") &&
+                 is_clean(folder / "clean/3.csv")
+             ? 0
+             : 1;
 }

@@ -143,6 +143,19 @@ std::string OpenClBackend::name() const {
                      options_.precision == Precision::mixed ? ", mixed precision" : "");
 }
 
+// A GPU gives a work-group to every segment; the eigensolver takes as long for one as for as many
+// as the units hold, ten or more each (docs/gpu.md).
+BackendTraits OpenClBackend::traits() const {
+  constexpr Index least_per_gpu_unit = 8;
+  const DeviceInfo& device = device_.info();
+  BackendTraits traits{.mixed = options_.precision == Precision::mixed};
+  if (device.kind == DeviceKind::gpu)
+    traits.least_segments =
+        std::max(traits.least_segments, least_per_gpu_unit * device.compute_units);
+  traits.full_segments = std::max(traits.least_segments, segments_per_unit * device.compute_units);
+  return traits;
+}
+
 void OpenClBackend::prepare(const Method& method) {
   std::visit([this](const auto& chosen) { workers_.front()->prepare(chosen); }, method);
 }

@@ -39,6 +39,7 @@ class OpenClBackend final : public Backend {
   ~OpenClBackend() override;
 
   std::string name() const override;
+  BackendTraits traits() const override;
 
   /// The choices in use.
   const Tuning& tuning() const { return tuning_; }

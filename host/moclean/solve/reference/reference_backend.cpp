@@ -1,5 +1,6 @@
 #include "moclean/solve/reference/reference_backend.hpp"
 
+#include <algorithm>
 #include <mutex>
 
 #include <fmt/format.h>
@@ -33,6 +34,12 @@ ReferenceBackend::ReferenceBackend(int jobs) : jobs_(jobs) {
 std::string ReferenceBackend::name() const {
   return fmt::format("reference (Eigen {}.{}.{}, {} {})", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
                      EIGEN_MINOR_VERSION, jobs_, jobs_ == 1 ? "thread" : "threads");
+}
+
+BackendTraits ReferenceBackend::traits() const {
+  BackendTraits traits;
+  traits.full_segments = std::max(traits.least_segments, segments_per_unit * jobs_);
+  return traits;
 }
 
 Solution ReferenceBackend::solve(const Problem& problem, const Method& method,

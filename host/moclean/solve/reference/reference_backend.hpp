@@ -14,6 +14,7 @@ class ReferenceBackend final : public Backend {
   explicit ReferenceBackend(int jobs = 1);
 
   std::string name() const override;
+  BackendTraits traits() const override;
 
   /// Reports after every segment. A stop request takes effect within one iteration of each thread.
   Solution solve(const Problem& problem, const Method& method,

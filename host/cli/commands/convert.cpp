@@ -1,0 +1,63 @@
+#include <cstdio>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "moclean/formats/formats.hpp"
+#include "moclean/formats/read_write.hpp"
+#include "moclean/run/inputs.hpp"
+#include "moclean/run/outputs.hpp"
+
+#include "cli/commands/commands.hpp"
+#include "cli/options/input_options.hpp"
+
+namespace moclean::cli {
+namespace {
+
+struct ConvertOptions {
+  std::filesystem::path input;
+  std::filesystem::path output;
+  ReadOptions reading;
+};
+
+ExitCode run(const ConvertOptions& options) {
+  require_writable_recording(options.output);
+  const Recording clip = read_recording(options.input, options.reading);
+  write_recording(options.output, clip);
+  fmt::print("{} -> {}: {} frames x {} columns\n", options.input.string(), options.output.string(),
+             clip.frames(), clip.samples.cols());
+  return ExitCode::done;
+}
+
+// A line per format: extension, what is done with it, what to know.
+std::string format_notes() {
+  std::string text;
+  for (const Format* format : formats()) {
+    std::string notes(format->notes);
+    std::erase(notes, '`');
+    text += fmt::format("  {:<6}{:<13}{}\n", format->extension,
+                        can_write(*format) ? "read, write" : "read", notes);
+  }
+  return text;
+}
+
+}  // namespace
+
+void add_convert(CLI::App& program, Action& action) {
+  CLI::App& command =
+      *program.add_subcommand("convert", "Rewrite a recording; skeletons become joint positions");
+  command.footer("Formats:\n" + format_notes() +
+                 "\nExample:\n  moclean convert 14_06.amc 14_06.npy --skeleton 14.asf");
+  const auto options = std::make_shared<ConvertOptions>();
+  command.add_option("INPUT", options->input, with_extensions("Recording", can_read))
+      ->required()
+      ->type_name("");
+  command.add_option("OUTPUT", options->output, with_extensions("File", can_write))
+      ->required()
+      ->type_name("");
+  add_input_options(command, options->reading);
+  command.callback([&action, options] { action = [options] { return run(*options); }; });
+}
+
+}  // namespace moclean::cli

@@ -1,0 +1,66 @@
+#include "cli/options/input_options.hpp"
+
+#include <charconv>
+#include <optional>
+#include <string_view>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "moclean/core/error.hpp"
+
+namespace moclean::cli {
+namespace {
+
+std::optional<Index> parse_frame(std::string_view text, const std::string& whole) {
+  if (text.empty()) return std::nullopt;
+  Index frame = 0;
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), frame);
+  if (error != std::errc{} || stop != text.data() + text.size() || frame < 0)
+    throw ArgumentError(fmt::format(
+        "--frames is '{}', expected A:B with whole numbers from 0, for instance 0:2800", whole));
+  return frame;
+}
+
+}  // namespace
+
+std::string with_extensions(const std::string& text, FormatTrait trait) {
+  return fmt::format("{} ({})", text, listed_extensions(trait));
+}
+
+FrameRange parse_frame_range(const std::string& text) {
+  const std::string_view view = text;
+  const std::size_t colon = view.find(':');
+  if (colon == view.npos)
+    throw ArgumentError(fmt::format("--frames is '{}', expected A:B, for instance 0:2800", text));
+  const FrameRange range{parse_frame(view.substr(0, colon), text),
+                         parse_frame(view.substr(colon + 1), text)};
+  if (range.last && range.first.value_or(0) >= *range.last)
+    throw ArgumentError(fmt::format("--frames {} holds no frame: A:B means A up to B - 1", text));
+  return range;
+}
+
+void add_frames_option(CLI::App& command, FrameRange& frames, const std::string& help) {
+  command
+      .add_option_function<std::string>(
+          "--frames", [&](const std::string& text) { frames = parse_frame_range(text); }, help)
+      ->type_name("A:B");
+}
+
+void add_file_options(CLI::App& command, double& rate, std::filesystem::path& skeleton) {
+  command.add_option("--rate", rate, "Frame rate of files that state none")
+      ->type_name("HZ")
+      ->check(CLI::PositiveNumber);
+  command
+      .add_option("--skeleton", skeleton,
+                  "Skeleton of .amc files; otherwise the .asf beside them that fits their name")
+      ->type_name("FILE.asf");
+}
+
+void add_input_options(CLI::App& command, ReadOptions& options) {
+  add_frames_option(command, options.frames,
+                    "Use frames A up to B - 1 only, counted from 0; A or B may be left out");
+  add_file_options(command, options.rate, options.skeleton);
+}
+
+}  // namespace moclean::cli

@@ -1,0 +1,48 @@
+#include "cli/printing/progress_line.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace moclean::cli {
+namespace {
+
+constexpr const char* clear_line = "\r\033[K";
+
+}  // namespace
+
+std::string progress_text(const std::string& task, const Progress& progress, double seconds,
+                          ProgressTotal total, const std::string& unit) {
+  if (progress.total == 0) return task;
+  std::string text =
+      fmt::format("{}: {} of {}{} {}", task, progress.finished,
+                  total == ProgressTotal::estimated ? "about " : "", progress.total, unit);
+  if (progress.finished == 0 || seconds <= 0) return text;
+  const double rate = static_cast<double>(progress.finished) / seconds;
+  const double left = static_cast<double>(progress.total - progress.finished) / rate;
+  return text + fmt::format(", {:.1f} {}/s, {:.0f} s left", rate, unit, std::ceil(left));
+}
+
+ProgressLine::ProgressLine(std::string task, bool wanted, std::string unit)
+    : task_(std::move(task)),
+      unit_(std::move(unit)),
+      visible_(wanted && isatty(STDERR_FILENO) == 1) {
+  if (visible_) std::fputs((clear_line + task_).c_str(), stderr);
+}
+
+ProgressLine::~ProgressLine() {
+  if (visible_) std::fputs(clear_line, stderr);
+}
+
+void ProgressLine::show(const Progress& progress, ProgressTotal total) {
+  const Clock::time_point now = Clock::now();
+  if (!visible_ || now - shown_ < std::chrono::milliseconds(100)) return;
+  shown_ = now;
+  const std::chrono::duration<double> seconds = now - begin_;
+  std::fputs((clear_line + progress_text(task_, progress, seconds.count(), total, unit_)).c_str(),
+             stderr);
+}
+
+}  // namespace moclean::cli

@@ -1,0 +1,142 @@
+#include "moclean/formats/text_scanner.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "moclean/core/error.hpp"
+
+namespace moclean {
+namespace {
+
+char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
+
+// std::from_chars knows no plus sign; "+-1" stays an error.
+const char* skip_plus(const char* first, const char* last) {
+  return first + 1 < last && first[0] == '+' && first[1] != '-' ? first + 1 : first;
+}
+
+}  // namespace
+
+std::string excerpt(std::string_view text) {
+  constexpr std::size_t longest = 32;
+  std::string shown(text.substr(0, longest));
+  std::replace_if(
+      shown.begin(), shown.end(), [](char c) { return c >= 0 && c < ' '; }, '?');
+  return fmt::format("'{}{}'", shown, text.size() > longest ? "..." : "");
+}
+
+TextScanner::TextScanner(std::string_view text, std::filesystem::path file, const Dialect& dialect)
+    : file_(std::move(file)), position_(text.data()), end_(text.data() + text.size()) {
+  if (text.starts_with("\xEF\xBB\xBF")) position_ += 3;
+  assign(dialect.blanks, Kind::blank);
+  assign("\r\n", Kind::line_end);
+  assign(dialect.marks, Kind::mark);
+  if (dialect.comment != '\0') assign({&dialect.comment, 1}, Kind::comment);
+}
+
+void TextScanner::assign(std::string_view characters, Kind kind) {
+  for (const char c : characters) kinds_[static_cast<unsigned char>(c)] = kind;
+}
+
+void TextScanner::skip_to_line_end() {
+  while (position_ != end_ && kind(*position_) != Kind::line_end) ++position_;
+}
+
+// Both are called where at_word() is false: before a comment, a line end, or the end.
+bool TextScanner::at_end_of_line() {
+  if (position_ != end_ && kind(*position_) == Kind::comment) skip_to_line_end();
+  return true;
+}
+
+bool TextScanner::at_end_of_text() {
+  while (at_line_end()) {
+    if (position_ == end_) return true;
+    next_line();
+  }
+  return false;
+}
+
+void TextScanner::next_line() {
+  skip_to_line_end();
+  if (position_ == end_) return;
+  const bool carriage_return = *position_++ == '\r';
+  if (carriage_return && position_ != end_ && *position_ == '\n') ++position_;
+  ++line_;
+}
+
+std::string_view TextScanner::word() {
+  if (at_end()) return {};
+  const char* const first = position_++;
+  if (kind(*first) == Kind::text)
+    while (!is_word_end(position_)) ++position_;
+  return {first, position_};
+}
+
+std::string_view TextScanner::text_before(char stop) {
+  if (at_line_end()) return {};
+  const char* const first = position_;
+  while (position_ != end_ && *position_ != stop && kind(*position_) != Kind::line_end &&
+         kind(*position_) != Kind::comment)
+    ++position_;
+  const char* last = position_;
+  while (last != first && kind(last[-1]) == Kind::blank) --last;
+  return {first, last};
+}
+
+bool TextScanner::accept(std::string_view keyword) {
+  if (at_end() || bytes_left() < keyword.size()) return false;
+  const bool same = std::equal(keyword.begin(), keyword.end(), position_,
+                               [](char a, char b) { return lower(a) == lower(b); });
+  const char* const after = position_ + keyword.size();
+  const bool ends = keyword.ends_with(':') || kind(keyword.back()) == Kind::mark;
+  if (!same || (!ends && !is_word_end(after))) return false;
+  position_ = after;
+  return true;
+}
+
+void TextScanner::expect(std::string_view keyword) {
+  if (!accept(keyword)) fail_expected(keyword);
+}
+
+double TextScanner::number_or_nan() {
+  if (at_end()) fail_expected("a number");
+  double value = 0;
+  const auto [after, error] = std::from_chars(skip_plus(position_, end_), end_, value);
+  if (error != std::errc() || !is_word_end(after)) fail_expected("a number");
+  position_ = after;
+  return value;
+}
+
+double TextScanner::finite_number() {
+  const char* const before = position_;
+  const double value = number_or_nan();
+  if (std::isfinite(value)) return value;
+  position_ = before;
+  fail_expected("a finite number");
+}
+
+Index TextScanner::count() {
+  if (at_end()) fail_expected("a whole number");
+  Index value = 0;
+  const auto [after, error] = std::from_chars(skip_plus(position_, end_), end_, value);
+  if (error != std::errc() || !is_word_end(after) || value < 0) fail_expected("a whole number");
+  position_ = after;
+  return value;
+}
+
+void TextScanner::expect_line_end() {
+  if (!at_line_end()) fail_expected("the end of the line");
+}
+
+void TextScanner::fail(const std::string& problem) const { throw FileError(file_, line_, problem); }
+
+void TextScanner::fail_expected(std::string_view expected) {
+  const std::string_view found = word();
+  fail(fmt::format("expected {}, found {}", expected,
+                   found.empty() ? "the end of the file" : excerpt(found)));
+}
+
+}  // namespace moclean

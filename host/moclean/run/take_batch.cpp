@@ -1,0 +1,28 @@
+#include "moclean/run/take_batch.hpp"
+
+#include <functional>
+#include <numeric>
+
+namespace moclean {
+
+std::uint64_t bytes_of(const Recording& take, std::uint64_t copies) {
+  return sizeof(double) * (copies * static_cast<std::uint64_t>(take.samples.size()) +
+                           static_cast<std::uint64_t>(take.channels.size()));
+}
+
+std::uint64_t TakeBatch::bytes() const {
+  return std::transform_reduce(takes.begin(), takes.end(), std::uint64_t{0}, std::plus{},
+                               [](const TakeInHand& take) { return take.memory.bytes(); });
+}
+
+Index TakeBatch::segments() const {
+  return std::transform_reduce(takes.begin(), takes.end(), Index{0}, std::plus{},
+                               [](const TakeInHand& take) { return take.segments; });
+}
+
+void TakeBatch::drop(std::size_t place) {
+  clips.erase(clips.begin() + static_cast<std::ptrdiff_t>(place));
+  takes.erase(takes.begin() + static_cast<std::ptrdiff_t>(place));
+}
+
+}  // namespace moclean

@@ -1,0 +1,115 @@
+#include <functional>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "moclean/core/error.hpp"
+#include "moclean/core/random.hpp"
+#include "moclean/formats/amc.hpp"
+#include "moclean/formats/bvh.hpp"
+#include "moclean/formats/csv.hpp"
+#include "moclean/formats/npy.hpp"
+
+#include "formats/tiny_files.hpp"
+
+namespace moclean {
+namespace {
+
+struct Format {
+  std::string name;
+  std::string file;  // a valid one
+  std::function<Recording(std::string_view)> parse;
+};
+
+std::string tiny_npy() {
+  const std::string header = "{'descr': '<f8', 'fortran_order': True, 'shape': (2, 2, 3), }\n";
+  return std::string("\x93NUMPY\x01\0", 8) + static_cast<char>(header.size()) + '\0' + header +
+         std::string(96, '?');
+}
+
+std::vector<Format> formats() {
+  const auto asf = [](std::string_view text) { return parse_asf(text, "x.asf"); };
+  return {{"bvh", std::string(test::tiny_bvh),
+           [](std::string_view text) { return joint_positions(parse_bvh(text, "x.bvh")); }},
+          {"asf", std::string(test::tiny_asf),
+           [asf](std::string_view text) {
+             const AcclaimSkeleton skeleton = asf(text);
+             return joint_positions(
+                 {skeleton.skeleton, Matrix::Zero(1, skeleton.skeleton.channels()), 0, ""});
+           }},
+          {"amc", std::string(test::tiny_amc),
+           [skeleton = asf(test::tiny_asf)](std::string_view text) {
+             return joint_positions(parse_amc(text, "x.amc", skeleton));
+           }},
+          {"csv", std::string(test::tiny_csv),
+           [](std::string_view text) { return parse_csv(text, "x.csv"); }},
+          {"npy", tiny_npy(), [](std::string_view text) { return parse_npy(text, "x.npy"); }}};
+}
+
+// A clip or an Error; anything else (another exception, a crash, a sanitizer's finding) fails.
+bool parses(const Format& format, const std::string& text) {
+  // An exact copy on the heap, so that a sanitizer sees a read one byte beyond it.
+  const std::vector<char> exact(text.begin(), text.end());
+  try {
+    const Recording clip = format.parse({exact.data(), exact.size()});
+    EXPECT_GT(clip.frames(), 0);
+    EXPECT_EQ(clip.samples.cols(), static_cast<Index>(clip.columns.size()));
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+class Corruption : public testing::TestWithParam<Format> {};
+
+TEST_P(Corruption, EveryPrefixParsesOrThrows) {
+  const Format& format = GetParam();
+
+  for (std::size_t length = 0; length < format.file.size(); ++length)
+    EXPECT_NO_THROW(parses(format, format.file.substr(0, length))) << "length " << length;
+
+  EXPECT_TRUE(parses(format, format.file));
+  EXPECT_FALSE(parses(format, format.file.substr(0, format.file.size() / 3)));
+}
+
+TEST_P(Corruption, MutatedBytesParseOrThrow) {
+  const Format& format = GetParam();
+  using namespace std::string_literals;
+  const std::string alphabet = "0123456789.-+eE{}()[]:,#'\" \t\r\nnanROOTJOINT\0\xFF"s;
+  Random random(2026);
+  int parsed = 0;
+  constexpr int count = 4000;
+
+  for (int i = 0; i < count; ++i) {
+    std::string text = format.file;
+    for (std::uint64_t changes = 1 + random.below(4); changes > 0; --changes) {
+      const std::size_t place = random.below(text.size());
+      const char byte = alphabet[random.below(alphabet.size())];
+      switch (random.below(4)) {
+        case 0:
+          text.insert(place, 1, byte);
+          break;
+        case 1:
+          text.erase(place, 1 + random.below(8));
+          break;
+        case 2:
+          text.insert(place, text.substr(random.below(text.size()), random.below(60)));
+          break;
+        default:
+          text[place] = byte;
+      }
+      if (text.empty()) text.push_back(' ');
+    }
+    EXPECT_NO_THROW(parsed += parses(format, text)) << "mutation " << i << ":\n" << text;
+  }
+
+  // Both outcomes have to occur, or the mutations do not reach the code behind the first check.
+  EXPECT_GT(parsed, count / 100);
+  EXPECT_LT(parsed, count - count / 100);
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, Corruption, testing::ValuesIn(formats()),
+                         [](const auto& format) { return format.param.name; });
+
+}  // namespace
+}  // namespace moclean

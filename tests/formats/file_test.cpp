@@ -1,0 +1,117 @@
+#include "moclean/formats/file.hpp"
+
+#include <gmock/gmock.h>
+
+#include "moclean/core/error.hpp"
+
+#include "formats/temporary_folder.hpp"
+
+namespace moclean {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+std::ptrdiff_t files_in(const fs::path& folder) {
+  return std::distance(fs::directory_iterator(folder), fs::directory_iterator());
+}
+
+TEST(ReadFile, GivesEveryByte) {
+  const test::TemporaryFolder folder;
+  const std::string content("a\0b\r\n\xFF", 6);
+
+  EXPECT_EQ(read_file(folder.file("x", content)), content);
+  EXPECT_EQ(read_file(folder.file("empty", "")), "");
+}
+
+TEST(ReadFile, NamesAFileThatIsNotThere) {
+  const test::TemporaryFolder folder;
+
+  EXPECT_THAT([&] { read_file(folder.path() / "none.bvh"); },
+              ThrowsMessage<FileError>(HasSubstr("none.bvh: there is no such file")));
+  EXPECT_THAT([&] { read_file(folder.path()); },
+              ThrowsMessage<FileError>(HasSubstr("expected a file, found a folder")));
+}
+
+TEST(AtomicFile, AppearsOnlyWhenComplete) {
+  const test::TemporaryFolder folder;
+  const fs::path target = folder.path() / "x.csv";
+  AtomicFile file(target);
+
+  file.write("half");
+  const bool early = fs::exists(target);
+  file.commit();
+
+  EXPECT_FALSE(early);
+  EXPECT_EQ(read_file(target), "half");
+  EXPECT_EQ(files_in(folder.path()), 1);
+}
+
+TEST(AtomicFile, LeavesTheOldFileWhenAbandoned) {
+  const test::TemporaryFolder folder;
+  const fs::path target = folder.file("x.csv", "old");
+
+  { AtomicFile(target).write("new"); }
+
+  EXPECT_EQ(read_file(target), "old");
+  EXPECT_EQ(files_in(folder.path()), 1);
+}
+
+TEST(AtomicFile, WaitsClosedForItsCommit) {
+  const test::TemporaryFolder folder;
+  const fs::path target = folder.path() / "x.csv";
+  AtomicFile file(target);
+  file.write("all");
+
+  file.close();
+  const bool early = fs::exists(target);
+  AtomicFile moved = std::move(file);
+  moved.commit();
+
+  EXPECT_FALSE(early);
+  EXPECT_EQ(moved.target(), target);
+  EXPECT_EQ(read_file(target), "all");
+  EXPECT_EQ(files_in(folder.path()), 1);
+}
+
+TEST(AtomicFile, LeavesNothingWhenAbandonedAfterItWasClosedAndMoved) {
+  const test::TemporaryFolder folder;
+  {
+    AtomicFile file(folder.path() / "x.csv");
+    file.close();
+    const AtomicFile moved = std::move(file);
+    EXPECT_EQ(files_in(folder.path()), 1);
+  }
+
+  EXPECT_EQ(files_in(folder.path()), 0);
+}
+
+TEST(AtomicFile, ReplacesTheOldFile) {
+  const test::TemporaryFolder folder;
+  const fs::path target = folder.file("x.csv", "old and longer");
+  AtomicFile file(target);
+
+  file.write("new");
+  file.commit();
+
+  EXPECT_EQ(read_file(target), "new");
+}
+
+TEST(AtomicFile, NamesAMissingFolder) {
+  const test::TemporaryFolder folder;
+
+  EXPECT_THAT([&] { AtomicFile(folder.path() / "none" / "x.csv"); },
+              ThrowsMessage<FileError>(testing::AllOf(HasSubstr("x.csv: cannot be written"),
+                                                      HasSubstr("there is no folder"))));
+}
+
+TEST(AtomicFile, RefusesTheNameOfAFolder) {
+  const test::TemporaryFolder folder;
+  fs::create_directory(folder.path() / "x.csv");
+
+  EXPECT_THROW(AtomicFile(folder.path() / "x.csv"), FileError);
+}
+
+}  // namespace
+}  // namespace moclean
