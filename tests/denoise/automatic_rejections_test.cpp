@@ -49,8 +49,8 @@ Recording with_bursts(Recording clip) {
   return clip;
 }
 
-double rms(const Recording& a, const Recording& b) {
-  return (a.samples - b.samples).norm() / std::sqrt(static_cast<double>(a.samples.size()));
+double rms(const Matrix& motion, const Recording& truth) {
+  return (motion - truth.samples).norm() / std::sqrt(static_cast<double>(motion.size()));
 }
 
 Denoised cleaned(const Recording& clip, Rejection reject) {

@@ -94,7 +94,7 @@ TEST(Automatic, TakesNoiseAwayThatNeighbouringFramesShare) {
 
   const double left = rms(cleaned(noisy).motion, truth);
 
-  EXPECT_LE(left, 0.8 * rms(noisy, truth));
+  EXPECT_LE(left, 0.8 * rms(noisy.samples, truth));
   EXPECT_LE(left, 0.85 * rms(cleaned(noisy, {.body = BodyRules::off}).motion, truth));
 }
 
