@@ -49,13 +49,13 @@ bool tells_trust(const Method& method) { return std::holds_alternative<MatrixNor
 void require_finite(const SegmentBatch& data) { require_entries(data, false); }
 
 void require_usable(const Problem& problem, const Method& method) {
-  require_entries(problem.data, accepts_missing(method));
   const auto priors = static_cast<Index>(problem.priors.size());
-  if (priors == 0) return;
-  if (!takes_prior(method)) throw ArgumentError("priors are not supported by this method");
-  if (priors != problem.data.segments())
+  if (priors > 0 && !takes_prior(method))
+    throw ArgumentError("priors are not supported by this method");
+  if (priors > 0 && priors != problem.data.segments())
     throw ArgumentError(fmt::format("{} priors for {} segments, expected one for each", priors,
                                     problem.data.segments()));
+  require_entries(problem.data, accepts_missing(method));
 }
 
 }  // namespace moclean
