@@ -169,12 +169,8 @@ TEST_F(Engine, AFailingDeviceLeavesNothing) {
 TEST_F(Engine, AStopLeavesNothing) {
   write_takes(40);
   job_.memory_limit = room_for(6);
-  std::stop_source source;
-  backend_.before_solving = [&](std::size_t call) {
-    if (call == 15) source.request_stop();
-  };
 
-  EXPECT_THROW(run(backend_, source.get_token()), Cancelled);
+  expect_cancelled_in(15);
 
   EXPECT_EQ(backend_.calls.size(), 15u);
   EXPECT_THAT(left_behind(), ElementsAre());
@@ -183,10 +179,8 @@ TEST_F(Engine, AStopLeavesNothing) {
 TEST_F(Engine, AStopKeepsAFolderThatWasThere) {
   write_takes(2);
   folder_.write_text("clean/earlier.txt", "earlier");
-  std::stop_source source;
-  backend_.before_solving = [&](std::size_t) { source.request_stop(); };
 
-  EXPECT_THROW(run(backend_, source.get_token()), Cancelled);
+  expect_cancelled_in(1);
 
   EXPECT_THAT(left_behind(), ElementsAre("clean", "clean/earlier.txt"));
 }

@@ -166,12 +166,8 @@ TEST_F(EachOnItsOwn, AResultAppearsWhenItsTakeIsDone) {
 TEST_F(EachOnItsOwn, AStopKeepsWhatWasWritten) {
   write_takes(40);
   job_.memory_limit = room_for(6);
-  std::stop_source source;
-  backend_.before_solving = [&](std::size_t call) {
-    if (call == 15) source.request_stop();
-  };
 
-  EXPECT_THROW(run(backend_, source.get_token()), Cancelled);
+  expect_cancelled_in(15);
 
   EXPECT_FALSE(told<TakeWritten>().empty());
   EXPECT_EQ(results().size(), told<TakeWritten>().size());

@@ -96,6 +96,15 @@ class SmallRun : public ::testing::Test {
         job_, backend, [this](const RunEvent& event) { events_.push_back(event); }, stop);
   }
 
+  // Runs on `backend_`, where a stop is requested while it solves for the `call`th time.
+  void expect_cancelled_in(std::size_t call) {
+    std::stop_source source;
+    backend_.before_solving = [&](std::size_t current) {
+      if (current == call) source.request_stop();
+    };
+    EXPECT_THROW(run(backend_, source.get_token()), Cancelled);
+  }
+
   // The takes that events of this kind were about, sorted.
   template <class Kind>
   std::vector<std::size_t> told() const {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <mutex>
-#include <utility>
+#include <type_traits>
 
 #include <fmt/format.h>
 
@@ -65,56 +65,44 @@ class OpenClBackend::Worker {
         device_(*own_) {}
 
   /// Makes the solver of a method, which compiles its kernels, unless there is one.
-  void prepare(const RobustPca&) {
-    if (!robust_pca_) robust_pca_.emplace(solver_of(device_, precision_, tuning_));
-  }
-  void prepare(const MatrixCompletion&) {
-    if (!completion_) completion_.emplace(device_, tuning_);
-  }
-  void prepare(const TemporalRobustPca&) {
-    if (!temporal_) temporal_.emplace(device_, tuning_, jobs_);
-  }
-  void prepare(const MatrixNormal&) {
-    if (!matrix_normal_) matrix_normal_.emplace(device_, tuning_, jobs_);
-  }
-  template <class Spectral>
-  void prepare(const Spectral&) {
-    if (!spectral_) spectral_.emplace(device_, tuning_);
+  template <class Chosen>
+  void prepare(const Chosen& method) {
+    auto& solver = solver_for(method);
+    if (solver) return;
+    using Solver = std::remove_reference_t<decltype(*solver)>;
+    if constexpr (std::is_same_v<Chosen, RobustPca>)
+      solver.emplace(solver_of(device_, precision_, tuning_));
+    else if constexpr (std::is_constructible_v<Solver, const Device&, const Tuning&, int>)
+      solver.emplace(device_, tuning_, jobs_);
+    else
+      solver.emplace(device_, tuning_);
   }
 
   /// use(solver) with the solver of a method that is prepared.
   template <class Chosen, class Use>
   void with(const Chosen& method, const Use& use) {
-    with_solver(*this, method, use);
-  }
-  template <class Chosen, class Use>
-  void with(const Chosen& method, const Use& use) const {
-    with_solver(*this, method, use);
+    if constexpr (std::is_same_v<Chosen, RobustPca>)
+      std::visit(use, *solver_for(method));
+    else
+      use(*solver_for(method));
   }
 
  private:
   using RobustPcaSolver =
       std::variant<opencl::RobustPcaSolver<double>, opencl::RobustPcaSolver<float>>;
 
-  template <class Self, class Chosen, class Use>
-  static void with_solver(Self& self, const Chosen&, const Use& use) {
-    if constexpr (std::is_same_v<Chosen, RobustPca>)
-      std::visit(use, *self.robust_pca_);
-    else if constexpr (std::is_same_v<Chosen, MatrixCompletion>)
-      use(*self.completion_);
-    else if constexpr (std::is_same_v<Chosen, TemporalRobustPca>)
-      use(*self.temporal_);
-    else if constexpr (std::is_same_v<Chosen, MatrixNormal>)
-      use(*self.matrix_normal_);
-    else
-      use(*self.spectral_);
-  }
-
   static RobustPcaSolver solver_of(const Device& device, Precision precision,
                                    const Tuning& tuning) {
     if (precision == Precision::mixed) return opencl::RobustPcaSolver<float>(device, tuning);
     return opencl::RobustPcaSolver<double>(device, tuning);
   }
+
+  auto& solver_for(const RobustPca&) { return robust_pca_; }
+  auto& solver_for(const MatrixCompletion&) { return completion_; }
+  auto& solver_for(const TemporalRobustPca&) { return temporal_; }
+  auto& solver_for(const MatrixNormal&) { return matrix_normal_; }
+  auto& solver_for(const TruncatedSvd&) { return spectral_; }
+  auto& solver_for(const SingularValueThresholding&) { return spectral_; }
 
   const Tuning& tuning_;
   Precision precision_;
@@ -167,7 +155,7 @@ opencl::SegmentSize OpenClBackend::size_of(const SegmentBatch& data, Index b,
       .stacked = static_cast<std::uint64_t>(data.rows(b) * data.pitch()) * sizeof(double)};
   std::visit(
       [&](const auto& chosen) {
-        std::as_const(*workers_.front()).with(chosen, [&](const auto& solver) {
+        workers_.front()->with(chosen, [&](const auto& solver) {
           size.memory = solver.memory_of(data.rows(b), data.columns(), chosen);
         });
       },
