@@ -1,6 +1,7 @@
 # A sanitizer's build compiles the sources of a folder as one, in half the time. The preset `dev` compiles
 # each by itself, so that a missing include or a name used twice shows there.
 option(MOCLEAN_UNITY "Compile the sources of each folder as one" OFF)
+option(MOCLEAN_UNITY_TESTS "Compile several tests of a program as one source" OFF)
 if(MOCLEAN_UNITY)
   target_compile_options(moclean_flags INTERFACE -Wno-shadow)  # of a neighbour's names
 endif()

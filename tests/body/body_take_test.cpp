@@ -1,18 +1,17 @@
 #include "moclean/body/body_take.hpp"
 
-#include <limits>
-
 #include <gtest/gtest.h>
 
 #include "moclean/body/vanished.hpp"
 #include "moclean/core/error.hpp"
 
 #include "support/limbs.hpp"
+#include "support/nan.hpp"
 
 namespace moclean {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+using test::nan;
 
 TEST(BodyTake, SeesAJointWhoseThreeCoordinatesAreThere) {
   Matrix samples(2, 6);

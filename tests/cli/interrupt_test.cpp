@@ -17,14 +17,23 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Not;
 
-// A run of the reference that shows its progress: 10 s where it is stopped, a second where not.
+// A run of the reference that shows its progress: many small segments, so that one is soon done
+// also under sanitizers; 10 s where it is stopped, a second where not.
 std::vector<std::string> long_run(const TemporaryFolder& folder, Index frames) {
-  return {"denoise",   folder.write("walk.npy", synthetic_walk(frames)),
-          "-o",        folder / "clean.npy",
-          "--json",    folder / "record.json",
-          "--method",  "slra",
-          "--backend", "reference",
-          "--jobs",    "1"};
+  return {"denoise",
+          folder.write("walk.npy", synthetic_walk(frames)),
+          "-o",
+          folder / "clean.npy",
+          "--json",
+          folder / "record.json",
+          "--method",
+          "slra",
+          "--segment-length",
+          "40",
+          "--backend",
+          "reference",
+          "--jobs",
+          "1"};
 }
 
 class Interrupted : public ::testing::TestWithParam<int> {};
@@ -32,7 +41,7 @@ class Interrupted : public ::testing::TestWithParam<int> {};
 TEST_P(Interrupted, StopsWithoutAnyOutput) {
   const TemporaryFolder folder;
   Program program(long_run(folder, 20000), {.device = "", .terminal = true});
-  ASSERT_TRUE(program.shows("of 100 segments"));
+  ASSERT_TRUE(program.shows("of 500 segments"));
 
   program.send(GetParam());
   const Outcome outcome = program.wait();
@@ -64,7 +73,7 @@ TEST(Interrupt, LeavesAnEarlierResultAsItWas) {
   const TemporaryFolder folder;
   const std::string earlier = folder.write_text("clean.npy", "earlier");
   Program program(long_run(folder, 20000), {.device = "", .terminal = true});
-  ASSERT_TRUE(program.shows("of 100 segments"));
+  ASSERT_TRUE(program.shows("of 500 segments"));
 
   program.send(SIGINT);
 
@@ -76,14 +85,15 @@ TEST(Interrupt, RemovesTheResultsThatWaitForTheOthers) {
   const TemporaryFolder folder;
   for (const char* name : {"takes/a.npy", "takes/b.npy", "takes/c.npy"})
     folder.write(name, synthetic_walk(3000));
-  Program program({"denoise", folder / "takes", "-o", folder / "clean", "--method", "slra",
-                   "--backend", "reference", "--jobs", "1", "--memory-limit", "32M"},
-                  {.device = "", .terminal = true});
+  Program program(
+      {"denoise", folder / "takes", "-o", folder / "clean", "--method", "slra", "--segment-length",
+       "40", "--backend", "reference", "--jobs", "1", "--memory-limit", "32M"},
+      {.device = "", .terminal = true});
   const auto some_wait = [&] {
     return std::ranges::any_of(folder.names(),
                                [](const std::string& name) { return name.ends_with(".tmp"); });
   };
-  ASSERT_TRUE(program.shows("15 of about 45 segments"));
+  ASSERT_TRUE(program.shows("75 of about 225 segments"));
   while (!some_wait()) usleep(1000);
 
   program.send(SIGINT);
@@ -95,7 +105,7 @@ TEST(Interrupt, RemovesTheResultsThatWaitForTheOthers) {
 TEST(Interrupt, KilledRunLeavesNoHalfFile) {
   const TemporaryFolder folder;
   Program program(long_run(folder, 20000), {.device = "", .terminal = true});
-  ASSERT_TRUE(program.shows("of 100 segments"));
+  ASSERT_TRUE(program.shows("of 500 segments"));
 
   program.send(SIGKILL);
 
@@ -107,7 +117,7 @@ TEST(Interrupt, IsIgnoredWhereItWasIgnoredBefore) {
   const TemporaryFolder folder;
   Program program(long_run(folder, 2000),
                   {.device = "", .terminal = true, .ignore_interrupt = true});
-  ASSERT_TRUE(program.shows("of 10 segments"));
+  ASSERT_TRUE(program.shows("of 50 segments"));
 
   program.send(SIGINT);
 

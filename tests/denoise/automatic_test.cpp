@@ -13,12 +13,13 @@
 #include "support/correlated_noise.hpp"
 #include "support/limbs.hpp"
 #include "support/matrix.hpp"
+#include "support/nan.hpp"
 #include "support/synthetic_walk.hpp"
 
 namespace moclean {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+using test::nan;
 
 Recording limbs(Index frames, double rate = 120) {
   const Matrix samples = test::swinging_limbs(frames, 8);

@@ -1,7 +1,5 @@
 #include "moclean/denoise/chain.hpp"
 
-#include <limits>
-
 #include <gmock/gmock.h>
 
 #include "moclean/core/error.hpp"
@@ -10,15 +8,15 @@
 #include "moclean/solve/reference/reference_backend.hpp"
 
 #include "support/matrix.hpp"
+#include "support/nan.hpp"
 #include "support/synthetic_walk.hpp"
 
 namespace moclean {
 namespace {
 
+using test::nan;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 Recording noisy_walk(Index frames) {
   return corrupt(test::synthetic_walk(frames), GaussianFrames{.fraction = 0.3}, 1).clip;

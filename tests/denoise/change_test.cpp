@@ -4,10 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include "support/nan.hpp"
+
 namespace moclean {
 namespace {
 
-const double nan = std::nan("");
+using test::nan;
 
 // Two frames of the joints a, b and c, and a weight; 14 samples.
 Recording small_take() {

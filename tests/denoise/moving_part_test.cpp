@@ -1,18 +1,17 @@
 #include "moclean/denoise/moving_part.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <gmock/gmock.h>
 
 #include "support/matrix.hpp"
+#include "support/nan.hpp"
 
 namespace moclean {
 namespace {
 
+using test::nan;
 using testing::ElementsAre;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // A joint that moves, one that does not, and a column of each kind.
 Recording small_take() {

@@ -1,21 +1,19 @@
 #include "moclean/denoise/sample_status.hpp"
 
-#include <limits>
-
 #include <gmock/gmock.h>
 
 #include "moclean/core/error.hpp"
 
 #include "support/matrix.hpp"
+#include "support/nan.hpp"
 
 namespace moclean {
 namespace {
 
+using test::nan;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // Six frames at 2 Hz of one joint and a column of its own.
 Recording take_of(Matrix samples) {

@@ -1,7 +1,6 @@
 #include "moclean/filter/butterworth.hpp"
 
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include <gmock/gmock.h>
@@ -9,16 +8,16 @@
 #include "moclean/core/error.hpp"
 
 #include "filter/signal.hpp"
+#include "support/nan.hpp"
 
 namespace moclean {
 namespace {
 
 using test::expect_samples;
+using test::nan;
 using test::rough_wave;
 using test::smoothed;
 using testing::ThrowsMessage;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // scipy.signal.sosfiltfilt(scipy.signal.butter(order, cutoff, fs=100, output='sos'), y), edges too.
 TEST(Butterworth, AgreesWithScipy) {

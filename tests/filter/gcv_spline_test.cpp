@@ -1,7 +1,6 @@
 #include "moclean/filter/gcv_spline.hpp"
 
 #include <cmath>
-#include <limits>
 #include <utility>
 #include <vector>
 
@@ -11,14 +10,14 @@
 #include "moclean/core/random.hpp"
 
 #include "filter/signal.hpp"
+#include "support/nan.hpp"
 
 namespace moclean {
 namespace {
 
+using test::nan;
 using test::rough_wave;
 using test::smoothed;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 constexpr double two_pi = 6.283185307179586;
 
 // Figures of GCVSPL (Woltring's Fortran of 1986, MD = 2), whose search for p ends at 1e-4 or so.

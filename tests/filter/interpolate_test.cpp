@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include <gmock/gmock.h>
 
 #include "moclean/core/specification.hpp"
 
 #include "filter/signal.hpp"
+#include "support/nan.hpp"
 
 namespace moclean {
 namespace {
@@ -18,7 +18,7 @@ using test::rough_wave;
 using test::smoothed;
 using Kind = Interpolate::Kind;
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+using test::nan;
 
 // Gaps of one sample up to seven, and at both ends.
 std::vector<double> holey_wave() {

@@ -1,13 +1,13 @@
 #include "moclean/filter/kalman.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <gmock/gmock.h>
 
 #include "moclean/core/error.hpp"
 
 #include "filter/signal.hpp"
+#include "support/nan.hpp"
 
 namespace moclean {
 namespace {
@@ -17,7 +17,7 @@ using test::rough_wave;
 using test::smoothed;
 using Model = KalmanSmoother::Model;
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+using test::nan;
 
 // The smoothed states of a linear Gaussian model are its most probable ones: scipy.linalg.lstsq
 // over the first state and all pushes w, rows (y - x) / measurement, w / process, and the prior.

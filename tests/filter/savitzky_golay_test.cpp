@@ -1,22 +1,21 @@
 #include "moclean/filter/savitzky_golay.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <gmock/gmock.h>
 
 #include "moclean/core/error.hpp"
 
 #include "filter/signal.hpp"
+#include "support/nan.hpp"
 
 namespace moclean {
 namespace {
 
 using test::expect_samples;
+using test::nan;
 using test::rough_wave;
 using test::smoothed;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // scipy.signal.savgol_filter(y, window, order), edges too: its default mode is "interp".
 TEST(SavitzkyGolay, AgreesWithScipy) {

@@ -1,22 +1,21 @@
 #include "moclean/filter/whittaker.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <gmock/gmock.h>
 
 #include "moclean/core/error.hpp"
 
 #include "filter/signal.hpp"
+#include "support/nan.hpp"
 
 namespace moclean {
 namespace {
 
 using test::expect_samples;
+using test::nan;
 using test::rough_wave;
 using test::smoothed;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<double> with_gap() {
   auto y = rough_wave();

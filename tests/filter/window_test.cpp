@@ -1,7 +1,6 @@
 #include "moclean/filter/window.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <gmock/gmock.h>
 
@@ -9,17 +8,17 @@
 
 #include "filter/signal.hpp"
 #include "support/matrix.hpp"
+#include "support/nan.hpp"
 
 namespace moclean {
 namespace {
 
 using test::expect_samples;
+using test::nan;
 using test::rough_wave;
 using test::smoothed;
 using testing::ElementsAre;
 using testing::NanSensitiveDoubleEq;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(MovingAverage, AgreesWithScipy) {  // scipy.ndimage.uniform_filter1d(y, 7)
   expect_samples(smoothed(MovingAverage{.window = 7}, rough_wave()), {{10, 1.34162876981664},

@@ -1,20 +1,19 @@
 #include "moclean/metric/motion_error.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <gmock/gmock.h>
 
 #include "moclean/core/error.hpp"
 
+#include "support/nan.hpp"
 #include "support/tolerance.hpp"
 
 namespace moclean {
 namespace {
 
+using test::nan;
 using testing::ThrowsMessage;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // A joint `a` and a joint `b` that hangs on it.
 Recording two_joints(const Matrix& samples) {

@@ -1,20 +1,19 @@
 #include "moclean/metric/touched.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <gmock/gmock.h>
 
 #include "moclean/core/error.hpp"
 
+#include "support/nan.hpp"
 #include "support/tolerance.hpp"
 
 namespace moclean {
 namespace {
 
+using test::nan;
 using testing::ThrowsMessage;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 TEST(RmseWhere, SeparatesTouchedFromUntouchedEntries) {
   const Matrix truth{{0, 0}, {0, 0}};

@@ -1,33 +1,28 @@
 #include "moclean/noise/background.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <gmock/gmock.h>
 
 #include "moclean/core/error.hpp"
 
+#include "noise/spoil.hpp"
 #include "support/matrix.hpp"
+#include "support/nan.hpp"
 #include "support/tolerance.hpp"
 
 namespace moclean {
 namespace {
 
+using test::nan;
+using test::spoil;
 using testing::ThrowsMessage;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 Recording still(Index frames, Index columns, double rate = 120, std::string unit = "") {
   return {.samples = Matrix::Zero(frames, columns),
           .columns = default_column_names(columns),
           .frame_rate = rate,
           .unit = std::move(unit)};
-}
-
-template <class Noise>
-Mask spoil(const Noise& noise, Recording& clip, std::uint64_t seed = 1) {
-  Random random(seed);
-  return add_noise(noise, random, clip);
 }
 
 template <class Noise>

@@ -1,28 +1,23 @@
 #include "moclean/noise/gaussian.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <gmock/gmock.h>
 
 #include "moclean/core/error.hpp"
 
+#include "noise/spoil.hpp"
 #include "support/matrix.hpp"
+#include "support/nan.hpp"
 #include "support/synthetic_walk.hpp"
 #include "support/tolerance.hpp"
 
 namespace moclean {
 namespace {
 
+using test::nan;
+using test::spoil;
 using testing::ThrowsMessage;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-
-template <class Noise>
-Mask spoil(const Noise& noise, Recording& clip, std::uint64_t seed = 1) {
-  Random random(seed);
-  return add_noise(noise, random, clip);
-}
 
 TEST(DeviationOf, IsTheMotionAboutItsMeanOverTheRatio) {
   const Matrix samples{{101, 0}, {103, nan}};  // variance 1 of two entries, 0 of one

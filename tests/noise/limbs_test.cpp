@@ -7,12 +7,14 @@
 
 #include "moclean/core/error.hpp"
 
+#include "noise/spoil.hpp"
 #include "support/matrix.hpp"
 #include "support/tolerance.hpp"
 
 namespace moclean {
 namespace {
 
+using test::spoil;
 using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::ThrowsMessage;
@@ -36,12 +38,6 @@ std::vector<std::string> limbs_of(const std::vector<std::string>& names) {
       text += (text.empty() ? "" : " ") + left.name + ">" + right.name;
   }
   return texts;
-}
-
-template <class Noise>
-Mask spoil(const Noise& noise, Recording& clip, std::uint64_t seed = 1) {
-  Random random(seed);
-  return add_noise(noise, random, clip);
 }
 
 const std::vector<std::string> body = {"root",  "lhip",   "lknee",  "rhip",   "rknee",

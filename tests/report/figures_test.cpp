@@ -1,22 +1,21 @@
 #include "moclean/report/figures.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <gmock/gmock.h>
 
 #include "moclean/core/error.hpp"
 
+#include "support/nan.hpp"
 #include "support/tolerance.hpp"
 
 namespace moclean {
 namespace {
 
+using test::nan;
 using test::tolerance::by_hand;
 using testing::HasSubstr;
 using testing::StartsWith;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 Recording still(Index frames) {
   return {.samples = Matrix::Zero(frames, 6),

@@ -5,12 +5,13 @@
 #include <gmock/gmock.h>
 
 #include "support/matrix.hpp"
+#include "support/nan.hpp"
 #include "support/tolerance.hpp"
 
 namespace moclean {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+using test::nan;
 
 TEST(Quantise, UsesTheWholeRangeOfCodes) {
   Matrix column(3, 1);

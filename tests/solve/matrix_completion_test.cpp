@@ -1,7 +1,6 @@
 #include "moclean/solve/reference/matrix_completion.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <gmock/gmock.h>
 
@@ -9,12 +8,13 @@
 #include "moclean/core/random.hpp"
 
 #include "support/matrix.hpp"
+#include "support/nan.hpp"
 #include "support/tolerance.hpp"
 
 namespace moclean {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+using test::nan;
 
 TEST(StartCompletion, IsThatOfTheAlgorithmOnPaper) {
   const Matrix data{{3, nan}, {0, 4}};

@@ -11,6 +11,7 @@
 #include "support/backends.hpp"
 #include "support/matrix.hpp"
 #include "support/model_motion.hpp"
+#include "support/nan.hpp"
 #include "support/synthetic_walk.hpp"
 #include "support/tolerance.hpp"
 
@@ -18,8 +19,7 @@ namespace moclean {
 namespace {
 
 using test::BackendKind;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+using test::nan;
 
 // Motion with dense noise, gross errors and gaps.
 Matrix hard_data(Index frames, Index columns, std::uint64_t seed) {
@@ -188,18 +188,15 @@ struct Shape {
   Index rows, columns;
 };
 
-class MatrixNormalAgreement : public testing::TestWithParam<std::tuple<BackendKind, Shape>> {};
-
-TEST_P(MatrixNormalAgreement, OfDeviceAndReference) {
-  const auto& [kind, shape] = GetParam();
-  const auto [rows, columns] = shape;
-  const SegmentBatch data = batch_of({rows, rows + 1}, columns);
+void expect_agreement(const std::vector<Index>& lengths, Index columns, const MatrixNormal& method,
+                      BackendKind kind) {
+  const SegmentBatch data = batch_of(lengths, columns);
   const std::vector<MotionPrior> priors =
       columns % 3 == 0 ? priors_of(data) : std::vector<MotionPrior>{};
   const Problem problem(data, priors);
 
-  const Solution device = test::make_backend(kind)->solve(problem, MatrixNormal{});
-  const Solution reference = ReferenceBackend(2).solve(problem, MatrixNormal{});
+  const Solution device = test::make_backend(kind)->solve(problem, method);
+  const Solution reference = ReferenceBackend(2).solve(problem, method);
 
   for (Index b = 0; b < data.segments(); ++b) {
     SCOPED_TRACE("segment " + std::to_string(b));
@@ -215,6 +212,25 @@ TEST_P(MatrixNormalAgreement, OfDeviceAndReference) {
               test::tolerance::backends_smoothing());
   }
 }
+
+class MatrixNormalAgreement : public testing::TestWithParam<std::tuple<BackendKind, Shape>> {};
+
+TEST_P(MatrixNormalAgreement, OfDeviceAndReference) {
+  const auto& [kind, shape] = GetParam();
+  expect_agreement({shape.rows, shape.rows + 1}, shape.columns, {}, kind);
+}
+
+// All kernels, in so few steps that Oclgrind, which interprets them, is soon done.
+class MatrixNormalFirstSteps : public testing::TestWithParam<BackendKind> {};
+
+TEST_P(MatrixNormalFirstSteps, AgreeOnATinyProblem) {
+  expect_agreement({5, 6}, 6, {.soft_steps = 1, .hard_steps = 1, .solve_iterations = 2},
+                   GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(Forms, MatrixNormalFirstSteps,
+                         testing::Values(BackendKind::opencl_own, BackendKind::opencl_group64),
+                         [](const auto& parameter) { return to_string(parameter.param); });
 
 std::string name_of(const testing::TestParamInfo<MatrixNormalAgreement::ParamType>& parameter) {
   const auto& [kind, shape] = parameter.param;

@@ -2,7 +2,6 @@
 #include "moclean/solve/matrix_normal_prior.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
@@ -12,12 +11,13 @@
 #include "moclean/solve/rounding_step.hpp"
 
 #include "support/matrix.hpp"
+#include "support/nan.hpp"
 #include "support/synthetic_walk.hpp"
 
 namespace moclean {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+using test::nan;
 
 Matrix rounded(const Matrix& data, double step) {
   return (data.array() / step).round().matrix() * step;

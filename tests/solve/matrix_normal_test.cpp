@@ -16,13 +16,14 @@
 #include "support/correlated_noise.hpp"
 #include "support/matrix.hpp"
 #include "support/model_motion.hpp"
+#include "support/nan.hpp"
 #include "support/synthetic_walk.hpp"
 #include "support/tolerance.hpp"
 
 namespace moclean {
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+using test::nan;
 
 Matrix walk(Index frames, Index columns) {
   return test::synthetic_walk(frames).samples.leftCols(columns);

@@ -1,8 +1,6 @@
 // Missing samples (NaN): how gaps are filled to start from, and robust PCA with weight 0 there.
 #include "moclean/solve/missing.hpp"
 
-#include <limits>
-
 #include <gmock/gmock.h>
 
 #include "moclean/core/error.hpp"
@@ -10,6 +8,7 @@
 
 #include "support/backends.hpp"
 #include "support/matrix.hpp"
+#include "support/nan.hpp"
 #include "support/planted.hpp"
 #include "support/tolerance.hpp"
 
@@ -17,8 +16,7 @@ namespace moclean {
 namespace {
 
 using test::BackendKind;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+using test::nan;
 
 Matrix with_missing(Matrix data, double share, std::uint64_t seed) {
   Random random(seed);

@@ -70,6 +70,19 @@ INSTANTIATE_TEST_SUITE_P(
                      testing::Values(Shape{3, 5}, Shape{25, 93}, Shape{70, 33})),
     name_of);
 
+// All kernels, in so few steps that Oclgrind, which interprets them, is soon done; 40 rows are two
+// blocks.
+class OpenClFirstIterations : public testing::TestWithParam<BackendKind> {};
+
+TEST_P(OpenClFirstIterations, AgreeOnATinyProblem) {
+  expect_agreement(test::planted_batch({.columns = 5, .rank = 1}, {3, 40}), {.max_iterations = 2},
+                   GetParam());
+}
+
+INSTANTIATE_TEST_SUITE_P(Forms, OpenClFirstIterations,
+                         testing::Values(BackendKind::opencl_own, BackendKind::opencl_group64),
+                         [](const auto& parameter) { return to_string(parameter.param); });
+
 class OpenClEdgeCases : public testing::TestWithParam<std::tuple<BackendKind, UpdateOrder>> {
  protected:
   void expect_agreement(const SegmentBatch& data) const {

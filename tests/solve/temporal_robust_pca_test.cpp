@@ -3,7 +3,6 @@
 #include "moclean/solve/temporal_robust_pca.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <gmock/gmock.h>
 
@@ -13,6 +12,7 @@
 #include "moclean/solve/reference/temporal_robust_pca.hpp"
 
 #include "support/matrix.hpp"
+#include "support/nan.hpp"
 #include "support/synthetic_walk.hpp"
 #include "support/tolerance.hpp"
 
@@ -20,8 +20,7 @@ namespace moclean {
 namespace {
 
 using reference::solve;
-
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+using test::nan;
 
 // A walk, and the same with a third of its frames spoilt as in the paper (Peng et al., equation 7).
 struct Spoilt {
