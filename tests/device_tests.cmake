@@ -58,11 +58,11 @@ moclean_oclgrind(linalg
       *GroupProducts*/WG16_3x5 *GroupProductsTest*/WG64_17x1 *GroupProductsTest.Gram*/WG128_25x93
       *GroupProductsTest.R*/WG128_25x93)
 moclean_oclgrind(solve
-  SMALL *ColumnRecurrence*Scalar1 *OpenClAgreement*/OpenClOwn_ae_3x5 *OpenClAgreement*/OpenClGroup64_ae_3x5
-        *OtherMethodAgreement*/OpenClOwn_*_3x5 *OtherMethodAgreement*/OpenClGroup64_Tslra_1x1
-        *MatrixNormalAgreement*/OpenClOwn_9x6 *MatrixNormalAgreement*/OpenClGroup64_9x6
+  SMALL *ColumnRecurrence*Scalar1 *OpenClAgreement*/OpenClCpu_ae_3x5 *OpenClAgreement*/OpenClGpuGroup64_ae_3x5
+        *OtherMethodAgreement*/OpenClCpu_*_3x5 *OtherMethodAgreement*/OpenClGpuGroup64_Tslra_1x1
+        *MatrixNormalAgreement*/OpenClCpu_9x6 *MatrixNormalAgreement*/OpenClGpuGroup64_9x6
   ALL *ColumnRecurrence*Scalar* *GroupSweepTest*WG64_* *GroupTemporalTest.T*WG64
-      *OtherMethodAgreement*/OpenClGroup128_Tslra_3x5 *OtherMethodAgreement*/OpenClOwn_*_3x5 *OpenClAgreement*/OpenClOwn_*3x5
-      *OpenClAgreement*/OpenClOwn_*100x1 *OpenClAgreement*/OpenClGroup64_ae_3x5 *MixedPrecision.IsWithin*/0
-      *MatrixNormalAgreement*/OpenClOwn_9x6 *MatrixNormalAgreement*/OpenClGroup64_9x6
-      *MissingAgreement*/OpenClOwn_ae_3x5)
+      *OtherMethodAgreement*/OpenClGpuGroup128_Tslra_3x5 *OtherMethodAgreement*/OpenClCpu_*_3x5 *OpenClAgreement*/OpenClCpu_*3x5
+      *OpenClAgreement*/OpenClCpu_*100x1 *OpenClAgreement*/OpenClGpuGroup64_ae_3x5 *MixedPrecision.IsWithin*/0
+      *MatrixNormalAgreement*/OpenClCpu_9x6 *MatrixNormalAgreement*/OpenClGpuGroup64_9x6
+      *MissingAgreement*/OpenClCpu_ae_3x5)

@@ -37,8 +37,8 @@ EntrySteps<Real>::GroupPrograms::GroupPrograms(const Device& device, int work_gr
 
 template <class Real>
 EntrySteps<Real>::EntrySteps(const Device& device, const Tuning& tuning) {
-  if (tuning.products == ProductPath::group) {
-    if (Memory::mixed) throw ArgumentError("mixed precision has no kernels in work-groups");
+  if (tuning.form == KernelForm::gpu) {
+    if (Memory::mixed) throw ArgumentError("mixed precision works with form cpu only");
     work_group_ = fit_work_group(in_groups_, device, tuning.work_group);
     return;
   }

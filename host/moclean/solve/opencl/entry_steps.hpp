@@ -13,14 +13,14 @@ Defines sweep_defines(const Device& device, NumberType type, const Tuning& tunin
 
 /// The steps of robust PCA that go over the entries of the stacked matrices of a batch, in one of
 /// two forms: explicit vectors, a work-item per block of rows, with the products between two
-/// eigenproblems in the same sweep (kernels/sweep.cl); or, with ProductPath::group, a work-group
+/// eigenproblems in the same sweep (kernels/sweep.cl); or, with KernelForm::gpu, a work-group
 /// per block, where every product is a step of its own (kernels/sweep_group.cl).
 template <class Real>
 class EntrySteps {
  public:
   using Memory = RobustPcaMemory<Real>;
 
-  /// Throws ArgumentError if mixed precision is asked for in work-groups, which has no such form.
+  /// Throws ArgumentError for mixed precision in the GPU form, which there is not.
   EntrySteps(const Device& device, const Tuning& tuning);
 
   /// Y = dual_scale D, and A = 0.

@@ -61,7 +61,7 @@ template <class Real>
 RobustPcaSolver<Real>::RobustPcaSolver(const Device& device, const Tuning& tuning)
     : device_(device),
       sweep_rows_((check(tuning), tuning.sweep_rows)),
-      products_(tuning.products, device, tuning),
+      products_(device, tuning),
       eigen_(device, tuning, mixed ? 1e-8 : 1e-12),  // far below what the iteration makes of it
       norms_(device, tuning),
       entries_(device, tuning),
@@ -69,7 +69,8 @@ RobustPcaSolver<Real>::RobustPcaSolver(const Device& device, const Tuning& tunin
       start_state_(steps_, "start_state"),
       threshold_(steps_, "threshold"),
       advance_(steps_, "advance") {
-  if (tuning.products == ProductPath::own) grams_.emplace(device, tuning);
+  const bool fuses = tuning.form == KernelForm::cpu && tuning.products == ProductPath::own;
+  if (fuses) grams_.emplace(device, tuning);
 }
 
 template <class Real>
@@ -119,11 +120,11 @@ void RobustPcaSolver<Real>::sum_partial_grams(const Batch& batch, Memory& m, Buf
     grams_->sum(per_row(batch), batch.device_segments(), batch.device_active(), m.partial_grams, g);
 }
 
-// Whether an iteration is one sweep over the rows, or one matrix after the other: by a library, in
-// work-groups, or where entries are missing.
+// Whether an iteration is one sweep over the rows, or one matrix after the other: with products of
+// CLBlast, in the GPU form, or where entries are missing.
 template <class Real>
 bool RobustPcaSolver<Real>::swept(const Memory& m) const {
-  return products_.path() == ProductPath::own && !m.missing;
+  return grams_ && !m.missing;
 }
 
 // Single precision leaves nothing of X that grading could save.
