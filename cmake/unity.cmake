@@ -2,9 +2,6 @@
 # each by itself, so that a missing include or a name used twice shows there.
 option(MOCLEAN_UNITY "Compile the sources of each folder as one" OFF)
 option(MOCLEAN_UNITY_TESTS "Compile several tests of a program as one source" OFF)
-if(MOCLEAN_UNITY)
-  target_compile_options(moclean_flags INTERFACE -Wno-shadow)  # of a neighbour's names
-endif()
 
 # moclean_unity(TARGET [EXCEPT FILE...]): FILE, relative to the current folder, is compiled by itself: its
 # unnamed namespace shares names with a neighbour's, or it is as long as all others together.

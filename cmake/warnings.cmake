@@ -1,6 +1,7 @@
 # Interface target with the flags our own code (library, program, tests, bench) is compiled with.
 add_library(moclean_flags INTERFACE)
-target_compile_options(moclean_flags INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
+target_compile_options(moclean_flags INTERFACE -Wall -Wextra -Wpedantic -Wconversion
+                       $<$<NOT:$<BOOL:$<TARGET_PROPERTY:UNITY_BUILD>>>:-Wshadow>  # else of a neighbour's names
                        $<$<CXX_COMPILER_ID:Clang>:-Wno-sign-conversion>)  # as in GCC's -Wconversion
 if(MOCLEAN_WARNINGS_AS_ERRORS)
   target_compile_options(moclean_flags INTERFACE -Werror)

@@ -57,10 +57,10 @@ moclean_oclgrind(linalg
       *GroupProducts*/WG16_3x5 *GroupProductsTest*/WG64_17x1 *GroupProductsTest.Gram*/WG128_25x93
       *GroupProductsTest.R*/WG128_25x93)
 moclean_oclgrind(solve
-  SMALL *ColumnRecurrence*Scalar1 *FirstIterations.* *FirstSteps.* *OtherMethodAgreement*/OpenClOwn_Tsvd_3x5
-        *OtherMethodAgreement*/OpenClOwn_SvtSoft_3x5
+  SMALL *ColumnRecurrence*Scalar1 *FirstIterations.* *FirstSteps.* *OtherMethodAgreement*/OpenClCpu_Tsvd_3x5
+        *OtherMethodAgreement*/OpenClCpu_SvtSoft_3x5
   ALL *ColumnRecurrence*Scalar* *GroupSweepTest*WG64_* *GroupTemporalTest.T*WG64
-      *OtherMethodAgreement*/OpenClGroup128_Tslra_3x5 *OtherMethodAgreement*/OpenClOwn_*_3x5 *OpenClAgreement*/OpenClOwn_*3x5
-      *OpenClAgreement*/OpenClOwn_*100x1 *OpenClAgreement*/OpenClGroup64_ae_3x5 *MixedPrecision.IsWithin*/0
-      *MatrixNormalAgreement*/OpenClOwn_9x6 *MatrixNormalAgreement*/OpenClGroup64_9x6
-      *MissingAgreement*/OpenClOwn_ae_3x5)
+      *OtherMethodAgreement*/OpenClGpuGroup128_Tslra_3x5 *OtherMethodAgreement*/OpenClCpu_*_3x5 *OpenClAgreement*/OpenClCpu_*3x5
+      *OpenClAgreement*/OpenClCpu_*100x1 *OpenClAgreement*/OpenClGpuGroup64_ae_3x5 *MixedPrecision.IsWithin*/0
+      *MatrixNormalAgreement*/OpenClCpu_9x6 *MatrixNormalAgreement*/OpenClGpuGroup64_9x6
+      *MissingAgreement*/OpenClCpu_ae_3x5)

@@ -149,6 +149,7 @@ TEST_F(Tune, OptionsThatDoNotGoTogetherAreUsageErrors) {
   const std::vector<std::string> wrong[] = {{"--precision", "mixed", "--backend", "reference"},
                                             {"--precision", "mixed", "--products", "clblast"},
                                             {"--precision", "mixed", "--products", "group"},
+                                            {"--precision", "mixed", "--form", "gpu"},
                                             {"--precision", "mixed", "--tolerance", "1e-7"},
                                             {"--precision", "half"},
                                             {"--profile", "--backend", "reference"}};

@@ -26,6 +26,7 @@ const Tuning tuning{.tile_rows = 6,
                     .tile_vectors = 4,
                     .sweep_rows = 48,
                     .panel = 2,
+                    .form = KernelForm::gpu,
                     .products = ProductPath::clblast,
                     .work_group = 32,
                     .eigen = EigenForm::group,
@@ -92,6 +93,8 @@ TEST_F(TuningCache, ChoiceOutOfItsRangeIsAProblem) {
       {"\"sweep_rows\": 48", "\"sweep_rows\": \"\""},
       {"\"eigen\": \"group\"", "\"eigen\": \"grape\""},
       {"\"clblast\"", "\"blas\""},
+      {"\"clblast\"", "\"group\""},
+      {"\"form\": \"gpu\"", "\"form\": \"group\""},
       {"\"work_group\": 32", "\"work_group\": 8"},
       {": 64", ": 4294967297"},
       {"\"queues\": 3", "\"queues\": 0"},
@@ -118,6 +121,22 @@ TEST_F(TuningCache, FileFromBeforeThereWereWorkGroupsTakesTheirDefault) {
 
   ASSERT_TRUE(cached.tuning) << cached.problem;
   EXPECT_EQ(cached.tuning->work_group, Tuning{}.work_group);
+}
+
+TEST_F(TuningCache, FileFromBeforeFormsHadANameTellsThemByItsProducts) {
+  const std::string here = "    \"form\": \"gpu\",\n    \"products\": \"clblast\"";
+  const CachedTuning group = read_changed(here, "    \"products\": \"group\"");
+  const CachedTuning own = read_changed(here, "    \"products\": \"own\"");
+  const CachedTuning clblast = read_changed(here, "    \"products\": \"clblast\"");
+
+  ASSERT_TRUE(group.tuning) << group.problem;
+  EXPECT_EQ(group.tuning->form, KernelForm::gpu);
+  EXPECT_EQ(group.tuning->products, ProductPath::own);
+  ASSERT_TRUE(own.tuning && clblast.tuning) << own.problem << clblast.problem;
+  EXPECT_EQ(own.tuning->form, KernelForm::cpu);
+  EXPECT_EQ(own.tuning->products, ProductPath::own);
+  EXPECT_EQ(clblast.tuning->form, KernelForm::cpu);
+  EXPECT_EQ(clblast.tuning->products, ProductPath::clblast);
 }
 
 TEST_F(TuningCache, LiesInTheCacheDirectoryOfTheUser) {

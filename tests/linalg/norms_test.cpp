@@ -49,7 +49,7 @@ TEST(Norms, AreThoseOfEverySegment) { expect_norms(norms_of(data(), {}), data())
 class GroupNorms : public testing::TestWithParam<int> {
  protected:
   static Tuning tuning(int work_group) {
-    return {.products = ProductPath::group, .work_group = work_group};
+    return {.form = KernelForm::gpu, .work_group = work_group};
   }
 };
 

@@ -12,11 +12,17 @@
 namespace moclean {
 namespace {
 
+struct Way {
+  const char* name;
+  KernelForm form = KernelForm::cpu;
+  ProductPath products = ProductPath::own;
+};
+
 struct Shape {
   Index rows, columns;
 };
 
-class ProductsTest : public testing::TestWithParam<std::tuple<ProductPath, Shape>> {
+class ProductsTest : public testing::TestWithParam<std::tuple<Way, Shape>> {
  protected:
   // Three segments: one and a half times, once, and a third of the rows, at least one each.
   ProductsTest()
@@ -24,8 +30,9 @@ class ProductsTest : public testing::TestWithParam<std::tuple<ProductPath, Shape
                               random(shape().rows / 3 + 1, 3)})),
         batch_(test::device(), data_, 0, 3),
         x_(test::device(), data_.storage()),
-        products_(std::get<0>(GetParam()), test::device()) {}
+        products_(test::device(), {.form = way().form, .products = way().products}) {}
 
+  static Way way() { return std::get<0>(GetParam()); }
   static Shape shape() { return std::get<1>(GetParam()); }
   static Matrix random(Index rows, std::uint64_t seed) {
     return test::random_matrix(rows, shape().columns, seed);
@@ -158,14 +165,17 @@ TEST_P(ProductsTest, OfASegmentDoNotDependOnItsNeighbours) {
   EXPECT_TRUE(test::same_bits(square(together, 1), expected));
 }
 
-std::string name_of(const testing::TestParamInfo<std::tuple<ProductPath, Shape>>& info) {
-  const auto& [path, shape] = info.param;
-  return to_string(path) + "_" + std::to_string(shape.rows) + "x" + std::to_string(shape.columns);
+std::string name_of(const testing::TestParamInfo<std::tuple<Way, Shape>>& info) {
+  const auto& [way, shape] = info.param;
+  return std::string(way.name) + "_" + std::to_string(shape.rows) + "x" +
+         std::to_string(shape.columns);
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Shapes, ProductsTest,
-    testing::Combine(testing::Values(ProductPath::own, ProductPath::clblast, ProductPath::group),
+    testing::Combine(testing::Values(Way{"cpu_own"},
+                                     Way{.name = "clblast", .products = ProductPath::clblast},
+                                     Way{"gpu_group", KernelForm::gpu}),
                      testing::Values(Shape{1, 1}, Shape{3, 5}, Shape{64, 64}, Shape{200, 93},
                                      Shape{61, 129}, Shape{25, 93}, Shape{17, 1})),
     name_of);

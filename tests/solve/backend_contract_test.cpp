@@ -162,8 +162,8 @@ TEST_P(BackendContract, StopsWhenAsked) {
 INSTANTIATE_TEST_SUITE_P(
     Backends, BackendContract,
     testing::Combine(testing::Values(BackendKind::reference, BackendKind::reference_two_jobs,
-                                     BackendKind::opencl_own, BackendKind::opencl_clblast,
-                                     BackendKind::opencl_group128),
+                                     BackendKind::opencl_cpu, BackendKind::opencl_clblast,
+                                     BackendKind::opencl_gpu128),
                      testing::Values(UpdateOrder::ae, UpdateOrder::ea)),
     [](const auto& parameter) {
       return to_string(std::get<0>(parameter.param)) + "_" +

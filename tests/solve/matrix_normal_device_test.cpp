@@ -180,8 +180,8 @@ TEST_P(MatrixNormalContract, ReportsEverySegmentAndStopsWhenAsked) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Backends, MatrixNormalContract,
-                         testing::Values(BackendKind::reference, BackendKind::opencl_own,
-                                         BackendKind::opencl_clblast, BackendKind::opencl_group128),
+                         testing::Values(BackendKind::reference, BackendKind::opencl_cpu,
+                                         BackendKind::opencl_clblast, BackendKind::opencl_gpu128),
                          [](const auto& parameter) { return to_string(parameter.param); });
 
 struct Shape {
@@ -229,7 +229,7 @@ TEST_P(MatrixNormalFirstSteps, AgreeOnATinyProblem) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Forms, MatrixNormalFirstSteps,
-                         testing::Values(BackendKind::opencl_own, BackendKind::opencl_group64),
+                         testing::Values(BackendKind::opencl_cpu, BackendKind::opencl_gpu_group64),
                          [](const auto& parameter) { return to_string(parameter.param); });
 
 std::string name_of(const testing::TestParamInfo<MatrixNormalAgreement::ParamType>& parameter) {
@@ -238,7 +238,7 @@ std::string name_of(const testing::TestParamInfo<MatrixNormalAgreement::ParamTyp
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, MatrixNormalAgreement,
-                         testing::Combine(testing::Values(BackendKind::opencl_own),
+                         testing::Combine(testing::Values(BackendKind::opencl_cpu),
                                           testing::Values(Shape{1, 1}, Shape{3, 5}, Shape{9, 6},
                                                           Shape{64, 64}, Shape{200, 93},
                                                           Shape{61, 129}, Shape{25, 93},
@@ -246,9 +246,9 @@ INSTANTIATE_TEST_SUITE_P(Shapes, MatrixNormalAgreement,
                          name_of);
 
 INSTANTIATE_TEST_SUITE_P(WorkGroups, MatrixNormalAgreement,
-                         testing::Combine(testing::Values(BackendKind::opencl_group64,
-                                                          BackendKind::opencl_group128,
-                                                          BackendKind::opencl_group256),
+                         testing::Combine(testing::Values(BackendKind::opencl_gpu64,
+                                                          BackendKind::opencl_gpu128,
+                                                          BackendKind::opencl_gpu256),
                                           testing::Values(Shape{1, 1}, Shape{3, 5}, Shape{9, 6},
                                                           Shape{25, 33}, Shape{530, 12})),
                          name_of);
@@ -258,9 +258,9 @@ TEST(MatrixNormalDevice, WorkGroupsOfProductsLeaveEveryBit) {
   const auto solve = [&](BackendKind kind) {
     return test::make_backend(kind)->solve(data, MatrixNormal{.soft_steps = 2, .hard_steps = 1});
   };
-  const Solution expected = solve(BackendKind::opencl_group256);
+  const Solution expected = solve(BackendKind::opencl_gpu256);
 
-  for (const BackendKind kind : {BackendKind::opencl_group64, BackendKind::opencl_group128})
+  for (const BackendKind kind : {BackendKind::opencl_gpu64, BackendKind::opencl_gpu128})
     EXPECT_TRUE(test::same_bits(solve(kind).low_rank, expected.low_rank)) << to_string(kind);
 }
 

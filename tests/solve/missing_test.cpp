@@ -79,7 +79,7 @@ TEST_P(RobustPcaWithMissing, ScalesWithItsData) {
 }
 
 TEST_P(RobustPcaWithMissing, CompleteSegmentsAmongOthersKeepEveryBit) {
-  for (const BackendKind kind : {BackendKind::opencl_own, BackendKind::opencl_clblast}) {
+  for (const BackendKind kind : {BackendKind::opencl_cpu, BackendKind::opencl_clblast}) {
     const Matrix complete = test::planted({.rows = 70, .columns = 21}).data();
     const Matrix holey = with_missing(complete.topRows(50), 0.1, 6);
     const auto backend = test::make_backend(kind);
@@ -98,7 +98,7 @@ TEST_P(RobustPcaWithMissing, CompleteSegmentsAmongOthersKeepEveryBit) {
 }
 
 TEST_P(RobustPcaWithMissing, NothingObservedIsSolvedWithoutAnIteration) {
-  for (const BackendKind kind : {BackendKind::reference, BackendKind::opencl_own}) {
+  for (const BackendKind kind : {BackendKind::reference, BackendKind::opencl_cpu}) {
     const Solution s = test::make_backend(kind)->solve(
         test::batch_of({Matrix::Constant(7, 5, nan), test::random_matrix(9, 5, 1)}), method());
 
@@ -154,8 +154,8 @@ std::string name_of(const testing::TestParamInfo<MissingAgreement::ParamType>& p
 
 INSTANTIATE_TEST_SUITE_P(
     Shapes, MissingAgreement,
-    testing::Combine(testing::Values(BackendKind::opencl_own, BackendKind::opencl_clblast,
-                                     BackendKind::opencl_group64),
+    testing::Combine(testing::Values(BackendKind::opencl_cpu, BackendKind::opencl_clblast,
+                                     BackendKind::opencl_gpu64),
                      testing::Values(UpdateOrder::ae, UpdateOrder::ea),
                      testing::Values(Shape{3, 5}, Shape{64, 64}, Shape{300, 21}, Shape{25, 93})),
     name_of);

@@ -84,10 +84,13 @@ TEST(MixedPrecisionBackend, RefusesAToleranceItCannotReach) {
   EXPECT_THROW(backend.solve(test::planted_batch({.columns = 5}, {9}), RobustPca{}), ArgumentError);
 }
 
-TEST(MixedPrecisionBackend, RefusesProductsThatItHasNoFormOf) {
-  for (const ProductPath path : {ProductPath::clblast, ProductPath::group})
-    EXPECT_THROW(OpenClBackend(test::device(), {.products = path, .precision = Precision::mixed}),
-                 ArgumentError);
+TEST(MixedPrecisionBackend, RefusesTheFormAndTheProductsThatItHasNot) {
+  EXPECT_THROW(
+      OpenClBackend(test::device(), {.form = KernelForm::gpu, .precision = Precision::mixed}),
+      ArgumentError);
+  EXPECT_THROW(OpenClBackend(test::device(),
+                             {.products = ProductPath::clblast, .precision = Precision::mixed}),
+               ArgumentError);
 }
 
 }  // namespace

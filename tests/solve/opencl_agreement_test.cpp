@@ -16,7 +16,7 @@ struct Shape {
 };
 
 void expect_agreement(const SegmentBatch& data, const RobustPca& method,
-                      BackendKind tested = BackendKind::opencl_own) {
+                      BackendKind tested = BackendKind::opencl_cpu) {
   const Solution device = test::make_backend(tested)->solve(data, method);
   const Solution reference = ReferenceBackend(2).solve(data, method);
   for (Index b = 0; b < data.segments(); ++b) {
@@ -56,8 +56,8 @@ std::string name_of(const testing::TestParamInfo<OpenClAgreement::ParamType>& pa
 
 INSTANTIATE_TEST_SUITE_P(
     Shapes, OpenClAgreement,
-    testing::Combine(testing::Values(BackendKind::opencl_own, BackendKind::opencl_clblast,
-                                     BackendKind::opencl_group128),
+    testing::Combine(testing::Values(BackendKind::opencl_cpu, BackendKind::opencl_clblast,
+                                     BackendKind::opencl_gpu128),
                      testing::Values(UpdateOrder::ae, UpdateOrder::ea),
                      testing::Values(Shape{1, 1}, Shape{3, 5}, Shape{64, 64}, Shape{200, 93},
                                      Shape{61, 129}, Shape{25, 93}, Shape{100, 1}, Shape{1, 93})),
@@ -65,7 +65,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     WorkGroups, OpenClAgreement,
-    testing::Combine(testing::Values(BackendKind::opencl_group64, BackendKind::opencl_group256),
+    testing::Combine(testing::Values(BackendKind::opencl_gpu64, BackendKind::opencl_gpu256),
                      testing::Values(UpdateOrder::ae, UpdateOrder::ea),
                      testing::Values(Shape{3, 5}, Shape{25, 93}, Shape{70, 33})),
     name_of);
@@ -80,7 +80,7 @@ TEST_P(OpenClFirstIterations, AgreeOnATinyProblem) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Forms, OpenClFirstIterations,
-                         testing::Values(BackendKind::opencl_own, BackendKind::opencl_group64),
+                         testing::Values(BackendKind::opencl_cpu, BackendKind::opencl_gpu_group64),
                          [](const auto& parameter) { return to_string(parameter.param); });
 
 class OpenClEdgeCases : public testing::TestWithParam<std::tuple<BackendKind, UpdateOrder>> {
@@ -165,8 +165,8 @@ TEST_P(OpenClEdgeCases, OtherParameters) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Orders, OpenClEdgeCases,
-                         testing::Combine(testing::Values(BackendKind::opencl_own,
-                                                          BackendKind::opencl_group128),
+                         testing::Combine(testing::Values(BackendKind::opencl_cpu,
+                                                          BackendKind::opencl_gpu128),
                                           testing::Values(UpdateOrder::ae, UpdateOrder::ea)),
                          [](const auto& parameter) {
                            return to_string(std::get<0>(parameter.param)) + "_" +

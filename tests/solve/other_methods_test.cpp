@@ -181,8 +181,8 @@ TEST_P(OtherMethodContract, ReportsEverySegmentAndStopsWhenAsked) {
 INSTANTIATE_TEST_SUITE_P(
     Backends, OtherMethodContract,
     testing::Combine(testing::Values(BackendKind::reference, BackendKind::reference_two_jobs,
-                                     BackendKind::opencl_own, BackendKind::opencl_clblast,
-                                     BackendKind::opencl_group128),
+                                     BackendKind::opencl_cpu, BackendKind::opencl_clblast,
+                                     BackendKind::opencl_gpu128),
                      testing::ValuesIn(every_kind)),
     [](const auto& parameter) {
       return to_string(std::get<0>(parameter.param)) + "_" +
@@ -235,7 +235,7 @@ TEST_P(OtherMethodFirstIterations, AgreeOnATinyProblem) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Forms, OtherMethodFirstIterations,
-                         testing::Values(BackendKind::opencl_own, BackendKind::opencl_group64),
+                         testing::Values(BackendKind::opencl_cpu, BackendKind::opencl_gpu_group64),
                          [](const auto& parameter) { return to_string(parameter.param); });
 
 std::string name_of(const testing::TestParamInfo<OtherMethodAgreement::ParamType>& parameter) {
@@ -246,7 +246,7 @@ std::string name_of(const testing::TestParamInfo<OtherMethodAgreement::ParamType
 
 INSTANTIATE_TEST_SUITE_P(
     Shapes, OtherMethodAgreement,
-    testing::Combine(testing::Values(BackendKind::opencl_own, BackendKind::opencl_clblast),
+    testing::Combine(testing::Values(BackendKind::opencl_cpu, BackendKind::opencl_clblast),
                      testing::ValuesIn(every_kind),
                      testing::Values(Shape{1, 1}, Shape{3, 5}, Shape{64, 64}, Shape{200, 93},
                                      Shape{61, 129}, Shape{25, 93}, Shape{300, 9}, Shape{1, 93})),
@@ -254,14 +254,14 @@ INSTANTIATE_TEST_SUITE_P(
 
 INSTANTIATE_TEST_SUITE_P(
     WorkGroups, OtherMethodAgreement,
-    testing::Combine(testing::Values(BackendKind::opencl_group128), testing::ValuesIn(every_kind),
+    testing::Combine(testing::Values(BackendKind::opencl_gpu128), testing::ValuesIn(every_kind),
                      testing::Values(Shape{3, 5}, Shape{25, 93}, Shape{300, 9})),
     name_of);
 
 // The only one of these methods whose steps over entries have a form for GPUs.
 INSTANTIATE_TEST_SUITE_P(
     OtherWorkGroups, OtherMethodAgreement,
-    testing::Combine(testing::Values(BackendKind::opencl_group64, BackendKind::opencl_group256),
+    testing::Combine(testing::Values(BackendKind::opencl_gpu64, BackendKind::opencl_gpu256),
                      testing::Values(Kind::tslra),
                      testing::Values(Shape{1, 1}, Shape{61, 129}, Shape{300, 9})),
     name_of);

@@ -38,6 +38,7 @@ struct Case {
   UpdateOrder order = UpdateOrder::ae;
   Precision precision = Precision::f64;
   EigenForm eigen = EigenForm::lanes;
+  KernelForm form = KernelForm::cpu;
   ProductPath products = ProductPath::own;
 };
 
@@ -49,7 +50,8 @@ TEST_P(QueuesTest, LeaveEveryBit) {
   const RobustPca method{.tolerance = c.precision == Precision::mixed ? mixed_tolerance : 1e-7,
                          .order = c.order};
   const auto solve = [&](int queues, std::int64_t batch_segments) {
-    const Tuning tuning{.products = c.products,
+    const Tuning tuning{.form = c.form,
+                        .products = c.products,
                         .eigen = c.eigen,
                         .batch_segments = batch_segments,
                         .queues = queues};
@@ -71,7 +73,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Case{.name = "mixed", .precision = Precision::mixed},
                     Case{.name = "group", .eigen = EigenForm::group},
                     Case{.name = "clblast", .products = ProductPath::clblast},
-                    Case{.name = "gpu", .eigen = EigenForm::group, .products = ProductPath::group}),
+                    Case{.name = "gpu", .eigen = EigenForm::group, .form = KernelForm::gpu}),
     [](const auto& parameter) { return parameter.param.name; });
 
 // The limit is searched for: the least that does not throw holds the largest segment alone.

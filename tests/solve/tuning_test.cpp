@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include "moclean/solve/opencl/opencl_backend.hpp"
 
@@ -103,9 +103,9 @@ TEST(Tuning, GroupFormDoesNotDependOnTheNeighbours) {
                    OpenClBackend(test::device(), {.tuning = alone}).solve(data, RobustPca{}));
 }
 
-TEST(Tuning, WorkGroupsOfProductsLeaveEveryBit) {
+TEST(Tuning, WorkGroupsOfTheGpuFormLeaveEveryBit) {
   const auto solve = [](const RobustPca& method, int work_group) {
-    const Tuning tuning{.products = ProductPath::group, .work_group = work_group};
+    const Tuning tuning{.form = KernelForm::gpu, .work_group = work_group};
     const SegmentBatch data = test::planted_batch({.columns = 31, .rank = 3}, {25, 70, 31, 300});
     return OpenClBackend(test::device(), {.tuning = tuning}).solve(data, method);
   };
@@ -132,9 +132,10 @@ TEST(Tuning, DefaultFormsFollowTheKindOfDevice) {
   gpu.kind = DeviceKind::gpu;
 
   EXPECT_EQ(default_tuning(cpu).eigen, EigenForm::lanes);
-  EXPECT_EQ(default_tuning(cpu).products, ProductPath::own);
+  EXPECT_EQ(default_tuning(cpu).form, KernelForm::cpu);
   EXPECT_EQ(default_tuning(gpu).eigen, EigenForm::group);
-  EXPECT_EQ(default_tuning(gpu).products, ProductPath::group);
+  EXPECT_EQ(default_tuning(gpu).form, KernelForm::gpu);
+  EXPECT_EQ(default_tuning(gpu).products, ProductPath::own);
   EXPECT_EQ(default_tuning(gpu).work_group, 64);
 }
 
@@ -153,13 +154,52 @@ TEST(Tuning, DefaultQueuesFollowTheComputeUnitsOfACpu) {
   EXPECT_EQ(queues(DeviceKind::other, 64), 1);
 }
 
-TEST(Tuning, ForOtherProductsServesMixedPrecisionWithItsOwn) {
-  for (const ProductPath path : {ProductPath::clblast, ProductPath::group}) {
-    const OpenClBackend backend(
-        test::device(), {.precision = Precision::mixed, .tuning = Tuning{.products = path}});
+TEST(Tuning, ForAnotherFormOrProductsServesMixedPrecisionWithItsOwn) {
+  const Tuning other{.form = KernelForm::gpu, .products = ProductPath::clblast};
+  const OpenClBackend backend(test::device(), {.precision = Precision::mixed, .tuning = other});
 
-    EXPECT_EQ(backend.tuning().products, ProductPath::own);
+  EXPECT_EQ(backend.tuning().form, KernelForm::cpu);
+  EXPECT_EQ(backend.tuning().products, ProductPath::own);
+}
+
+TEST(Tuning, OptionsOverrideItsFormAndItsProducts) {
+  const Tuning kept{.form = KernelForm::gpu, .products = ProductPath::clblast};
+
+  const OpenClBackend form(test::device(), {.form = KernelForm::cpu, .tuning = kept});
+  const OpenClBackend products(test::device(), {.products = ProductPath::own, .tuning = kept});
+
+  EXPECT_EQ(to_string(form.tuning().form), "cpu");
+  EXPECT_EQ(to_string(form.tuning().products), "clblast");
+  EXPECT_EQ(to_string(products.tuning().form), "gpu");
+  EXPECT_EQ(to_string(products.tuning().products), "own");
+  EXPECT_THAT(form.name(), testing::HasSubstr(", form cpu, products clblast)"));
+}
+
+TEST(Tuning, GpuFormAgreesWithEitherProducts) {
+  const Tuning gpu{.form = KernelForm::gpu};
+  const Tuning with_clblast{.form = KernelForm::gpu, .products = ProductPath::clblast};
+  OpenClBackend own(test::device(), {.tuning = gpu});
+  OpenClBackend clblast(test::device(), {.tuning = with_clblast});
+
+  for (const UpdateOrder order : {UpdateOrder::ae, UpdateOrder::ea})
+    expect_close(clblast.solve(tiny_segments(), RobustPca{.order = order}),
+                 own.solve(tiny_segments(), RobustPca{.order = order}));
+  const SegmentBatch data = test::planted_batch({.columns = 6, .rank = 2}, {40, 90});
+  for (const Method& method : {Method(TemporalRobustPca{}), Method(MatrixNormal{})}) {
+    const Solution a = clblast.solve(data, method), b = own.solve(data, method);
+    for (Index s = 0; s < data.segments(); ++s)
+      EXPECT_LE(test::relative_difference(a.low_rank.segment(s), b.low_rank.segment(s)),
+                test::tolerance::backends_smoothing());
   }
+}
+
+TEST(Tuning, NamesOfFormsAndProductsAreReadBack) {
+  for (const KernelForm form : {KernelForm::cpu, KernelForm::gpu})
+    EXPECT_EQ(parse_kernel_form(to_string(form)), form);
+  for (const ProductPath products : {ProductPath::own, ProductPath::clblast})
+    EXPECT_EQ(parse_product_path(to_string(products)), products);
+  EXPECT_THROW(parse_kernel_form("group"), ArgumentError);
+  EXPECT_THROW(parse_product_path("gpu"), ArgumentError);
 }
 
 TEST(Profiling, LeavesResultsAsTheyAreAndSeesEveryIteration) {
@@ -186,7 +226,7 @@ TEST(Profiling, LeavesResultsAsTheyAreAndSeesEveryIteration) {
 
 TEST(Profiling, KnowsTheWorkOfProductsInWorkGroups) {
   const Device profiled(test::device().info().name, Profiling::on);
-  const Tuning tuning{.products = ProductPath::group, .work_group = 128, .eigen = EigenForm::group};
+  const Tuning tuning{.form = KernelForm::gpu, .work_group = 128, .eigen = EigenForm::group};
   const SegmentBatch data = test::planted_batch({.columns = 31, .rank = 3}, {25, 70});
 
   const Solution solution = OpenClBackend(profiled, {.tuning = tuning}).solve(data, RobustPca{});

@@ -14,11 +14,11 @@ namespace moclean::test {
 enum class BackendKind {
   reference,
   reference_two_jobs,
-  opencl_own,
+  opencl_cpu,
   opencl_clblast,
-  opencl_group64,  // everything in work-groups, as on a GPU
-  opencl_group128,
-  opencl_group256
+  opencl_gpu64,  // all of the GPU form, in work-groups of 64
+  opencl_gpu128,
+  opencl_gpu256
 };
 
 inline std::string to_string(BackendKind kind) {
@@ -27,23 +27,22 @@ inline std::string to_string(BackendKind kind) {
       return "Reference";
     case BackendKind::reference_two_jobs:
       return "ReferenceTwoJobs";
-    case BackendKind::opencl_own:
-      return "OpenClOwn";
+    case BackendKind::opencl_cpu:
+      return "OpenClCpu";
     case BackendKind::opencl_clblast:
       return "OpenClClblast";
-    case BackendKind::opencl_group64:
-      return "OpenClGroup64";
-    case BackendKind::opencl_group128:
-      return "OpenClGroup128";
-    case BackendKind::opencl_group256:
+    case BackendKind::opencl_gpu64:
+      return "OpenClGpuGroup64";
+    case BackendKind::opencl_gpu128:
+      return "OpenClGpuGroup128";
+    case BackendKind::opencl_gpu256:
       break;
   }
-  return "OpenClGroup256";
+  return "OpenClGpuGroup256";
 }
 
-inline std::unique_ptr<Backend> make_group_backend(int work_group) {
-  const Tuning tuning{
-      .products = ProductPath::group, .work_group = work_group, .eigen = EigenForm::group};
+inline std::unique_ptr<Backend> make_gpu_backend(int work_group) {
+  const Tuning tuning{.form = KernelForm::gpu, .work_group = work_group, .eigen = EigenForm::group};
   return std::make_unique<OpenClBackend>(device(), OpenClOptions{.tuning = tuning});
 }
 
@@ -53,19 +52,20 @@ inline std::unique_ptr<Backend> make_backend(BackendKind kind) {
       return std::make_unique<ReferenceBackend>(1);
     case BackendKind::reference_two_jobs:
       return std::make_unique<ReferenceBackend>(2);
-    case BackendKind::opencl_own:
-      return std::make_unique<OpenClBackend>(device(), OpenClOptions{.products = ProductPath::own});
+    case BackendKind::opencl_cpu:
+      return std::make_unique<OpenClBackend>(
+          device(), OpenClOptions{.form = KernelForm::cpu, .products = ProductPath::own});
     case BackendKind::opencl_clblast:
-      return std::make_unique<OpenClBackend>(device(),
-                                             OpenClOptions{.products = ProductPath::clblast});
-    case BackendKind::opencl_group64:
-      return make_group_backend(64);
-    case BackendKind::opencl_group128:
-      return make_group_backend(128);
-    case BackendKind::opencl_group256:
+      return std::make_unique<OpenClBackend>(
+          device(), OpenClOptions{.form = KernelForm::cpu, .products = ProductPath::clblast});
+    case BackendKind::opencl_gpu64:
+      return make_gpu_backend(64);
+    case BackendKind::opencl_gpu128:
+      return make_gpu_backend(128);
+    case BackendKind::opencl_gpu256:
       break;
   }
-  return make_group_backend(256);
+  return make_gpu_backend(256);
 }
 
 }  // namespace moclean::test

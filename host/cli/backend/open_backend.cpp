@@ -38,7 +38,8 @@ OpenedBackend open_backend(const BackendOptions& options, bool needed, Profiling
   const fs::path file = options.use_tuning ? tuning_file(device->info()) : fs::path();
   const std::optional<Tuning> kept = kept_tuning(file, device->info());
   auto backend = std::make_unique<OpenClBackend>(
-      *device, OpenClOptions{.products = options.products,
+      *device, OpenClOptions{.form = options.form,
+                             .products = options.products,
                              .precision = options.precision,
                              .memory_limit = std::min(device->info().usable_memory(),
                                                       device_share(options.memory_limit)),

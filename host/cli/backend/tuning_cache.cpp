@@ -55,19 +55,32 @@ int choice(const Json& record, const char* name) {
   return static_cast<int>(value);
 }
 
+// Form and products. In a file from before forms had a name the products told both.
+void read_form(const Json& record, Tuning& tuning) {
+  const auto products = record.at("products").get<std::string>();
+  if (record.contains("form")) {
+    tuning.form = parse_kernel_form(record.at("form").get<std::string>());
+    tuning.products = parse_product_path(products);
+  } else if (products == former_gpu_products) {
+    tuning.form = KernelForm::gpu;
+  } else {
+    tuning.products = parse_product_path(products);
+  }
+}
+
 // A file from before there were queues, or products in work-groups, leaves them at their default.
 Tuning tuning_of(const Json& record, const DeviceInfo& device) {
   Tuning tuning{.tile_rows = choice(record, "tile_rows"),
                 .tile_vectors = choice(record, "tile_vectors"),
                 .sweep_rows = choice(record, "sweep_rows"),
                 .panel = choice(record, "panel"),
-                .products = parse_product_path(record.at("products").get<std::string>()),
                 .work_group = record.contains("work_group") ? choice(record, "work_group")
                                                             : default_tuning(device).work_group,
                 .eigen = parse_eigen_form(record.at("eigen").get<std::string>()),
                 .batch_segments = choice(record, "batch_segments"),
                 .queues = record.contains("queues") ? choice(record, "queues")
                                                     : default_tuning(device).queues};
+  read_form(record, tuning);
   check(tuning);
   return tuning;
 }
@@ -117,15 +130,11 @@ void write_tuning(const fs::path& file, const DeviceInfo& device, const Tuning& 
 }
 
 Json tuning_record(const Tuning& tuning) {
-  return {{"tile_rows", tuning.tile_rows},
-          {"tile_vectors", tuning.tile_vectors},
-          {"sweep_rows", tuning.sweep_rows},
-          {"panel", tuning.panel},
-          {"products", to_string(tuning.products)},
-          {"work_group", tuning.work_group},
-          {"eigen", to_string(tuning.eigen)},
-          {"batch_segments", tuning.batch_segments},
-          {"queues", tuning.queues}};
+  return {{"tile_rows", tuning.tile_rows},           {"tile_vectors", tuning.tile_vectors},
+          {"sweep_rows", tuning.sweep_rows},         {"panel", tuning.panel},
+          {"form", to_string(tuning.form)},          {"products", to_string(tuning.products)},
+          {"work_group", tuning.work_group},         {"eigen", to_string(tuning.eigen)},
+          {"batch_segments", tuning.batch_segments}, {"queues", tuning.queues}};
 }
 
 }  // namespace moclean::cli

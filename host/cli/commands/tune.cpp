@@ -27,7 +27,7 @@ struct TuneOptions {
 
 void print_tried(const TriedTuning& tried) {
   const bool left_out = tried.repetitions == 0 && tried.result != TriedTuning::Result::wrong;
-  fmt::print("{:<20}{:>10.2f} ms{:>8.3f}  {}{}\n", tried.choice, 1e3 * tried.seconds, tried.ratio,
+  fmt::print("{:<28}{:>10.2f} ms{:>8.3f}  {}{}\n", tried.choice, 1e3 * tried.seconds, tried.ratio,
              to_string(tried.result), left_out ? ", one run: too slow" : "");
   std::fflush(stdout);
 }
@@ -66,7 +66,7 @@ ExitCode run(const TuneOptions& options) {
   const Index segments = options.quick ? 12 : 48;
   const ContestRules rules{.repetitions = options.quick ? 3 : 7, .quick = options.quick};
   if (table)
-    fmt::print("{}: {} segments of {} frames x {} columns\n{:<20}{:>13}{:>8}  {}\n",
+    fmt::print("{}: {} segments of {} frames x {} columns\n{:<28}{:>13}{:>8}  {}\n",
                device.info().name, segments, options.frames, options.columns, "choice", "median",
                "ratio", "result, to the default's");
   const ContestReport report = find_best_tuning(
@@ -92,8 +92,8 @@ void add_tune(CLI::App& program, Action& action) {
       "Ratios are to the choice it competes with, measured in turns; a better one has to save 3 "
       "%.\n"
       "Tiles, rows of a sweep, panel, queues and batch leave every bit of the results as it is;\n"
-      "products and form of the eigensolver change them within the bounds of moclean denoise\n"
-      "--verify.\n"
+      "form, products and form of the eigensolver change them within the bounds of moclean\n"
+      "denoise --verify.\n"
       "What is kept is for the device and its driver, in $XDG_CACHE_HOME/moclean or\n"
       "~/.cache/moclean; moclean denoise uses it unless told --no-tuning.\n\n"
       "Example:\n  moclean tune --device cpu");

@@ -31,16 +31,24 @@ std::vector<Candidate> eigen_forms(const Tuning& settled, bool quick) {
   return {{"eigensolver " + to_string(other.eigen), other}};
 }
 
-std::vector<Candidate> product_paths(const Tuning& settled, bool quick) {
+// Every form with every product.
+std::vector<Candidate> forms(const Tuning& settled, bool quick) {
   if (quick) return {};
   std::vector<Candidate> all;
-  for (const ProductPath path : {ProductPath::own, ProductPath::clblast, ProductPath::group}) {
-    if (path == settled.products) continue;
-    Tuning other = settled;
-    other.products = path;
-    all.push_back({"products " + to_string(path), other});
-  }
+  for (const KernelForm form : {KernelForm::cpu, KernelForm::gpu})
+    for (const ProductPath products : {ProductPath::own, ProductPath::clblast}) {
+      Tuning other = settled;
+      other.form = form;
+      other.products = products;
+      if (other == settled) continue;
+      all.push_back(
+          {fmt::format("form {}, products {}", to_string(form), to_string(products)), other});
+    }
   return all;
+}
+
+bool has_tiles(const Tuning& tuning) {
+  return tuning.form == KernelForm::cpu && tuning.products == ProductPath::own;
 }
 
 std::vector<Candidate> variants(const Tuning& settled, const char* name,
@@ -56,12 +64,12 @@ std::vector<Candidate> variants(const Tuning& settled, const char* name,
 }
 
 std::vector<Candidate> work_groups(const Tuning& settled, bool quick) {
-  if (settled.products != ProductPath::group || quick) return {};
+  if (settled.form != KernelForm::gpu || quick) return {};
   return variants(settled, "work-groups of", {64, 128, 256}, &Tuning::work_group);
 }
 
 std::vector<Candidate> tiles(const Tuning& settled, bool quick) {
-  if (settled.products != ProductPath::own) return {};
+  if (!has_tiles(settled)) return {};
   std::vector<Candidate> all;
   for (const auto& [rows, vectors] : {std::pair(4, 3), {4, 4}, {6, 3}, {6, 4}, {8, 2}, {12, 2}}) {
     Tuning other = settled;
@@ -74,7 +82,7 @@ std::vector<Candidate> tiles(const Tuning& settled, bool quick) {
 }
 
 std::vector<Candidate> sweeps(const Tuning& settled, bool quick) {
-  if (settled.products != ProductPath::own) return {};
+  if (!has_tiles(settled)) return {};
   return variants(settled, "sweep rows", quick ? std::vector{16} : std::vector{16, 24, 48, 64},
                   &Tuning::sweep_rows);
 }
@@ -101,8 +109,7 @@ std::vector<Candidate> queues(const Tuning& settled, bool quick) {
   return all;
 }
 
-constexpr Kind kinds[] = {eigen_forms, product_paths, work_groups, tiles,
-                          sweeps,      panels,        queues,      batches};
+constexpr Kind kinds[] = {eigen_forms, forms, work_groups, tiles, sweeps, panels, queues, batches};
 
 bool equal_bits(const SegmentBatch& a, const SegmentBatch& b) {
   return std::ranges::equal(a.storage(), b.storage());

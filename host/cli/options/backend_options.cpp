@@ -28,16 +28,32 @@ void add_device(CLI::App& command, BackendOptions& options) {
       ->group(backend_group);
 }
 
-void add_arithmetic(CLI::App& command, BackendOptions& options) {
+// What `--products group`, as earlier versions said, leaves to complete_backend().
+void take_products(const std::string& text, BackendOptions& options) {
+  options.former_spelling = text == former_gpu_products;
+  options.products = options.former_spelling ? ProductPath::own : parse_product_path(text);
+}
+
+void add_kernels(CLI::App& command, BackendOptions& options) {
   command
       .add_option_function<std::string>(
-          "--products",
-          [&](const std::string& text) { options.products = parse_product_path(text); },
-          "Matrix products on the OpenCL device: our kernels for CPUs, CLBlast, or our kernels for "
-          "GPUs; default: those of the tuning, else group on GPUs and own elsewhere")
-      ->check(CLI::IsMember({"own", "clblast", "group"}))
+          "--form", [&](const std::string& text) { options.form = parse_kernel_form(text); },
+          "Form of our kernels on the OpenCL device, whatever that is: for CPUs, or for GPUs; "
+          "default: that of the tuning, else gpu on GPUs and cpu elsewhere")
+      ->check(CLI::IsMember({"cpu", "gpu"}))
+      ->type_name("FORM")
+      ->group(backend_group);
+  command
+      .add_option_function<std::string>(
+          "--products", [&](const std::string& text) { take_products(text, options); },
+          "Matrix products on the OpenCL device: of our kernels in that form, or of CLBlast; "
+          "default: those of the tuning, else own")
+      ->check(CLI::IsMember({"own", "clblast", "group"}).description("{own,clblast}"))
       ->type_name("PATH")
       ->group(backend_group);
+}
+
+void add_arithmetic(CLI::App& command, BackendOptions& options) {
   command
       .add_option_function<std::string>(
           "--precision",
@@ -79,6 +95,7 @@ void add_resources(CLI::App& command, BackendOptions& options) {
 
 void add_backend_options(CLI::App& command, BackendOptions& options) {
   add_device(command, options);
+  add_kernels(command, options);
   add_arithmetic(command, options);
   add_resources(command, options);
 }
@@ -87,9 +104,13 @@ void complete_backend(BackendOptions& options) {
   const bool mixed = options.precision == Precision::mixed;
   if (mixed && options.backend != "opencl")
     throw ArgumentError("--precision mixed needs --backend opencl; the reference is double");
-  if (mixed && options.products && *options.products != ProductPath::own)
-    throw ArgumentError("--precision mixed works with --products own only, not with " +
-                        to_string(*options.products));
+  if (options.former_spelling && options.form == KernelForm::cpu)
+    throw ArgumentError("--products group means --form gpu and contradicts --form cpu");
+  if (options.former_spelling) options.form = KernelForm::gpu;
+  if (mixed && options.form == KernelForm::gpu)
+    throw ArgumentError("--precision mixed works with --form cpu only");
+  if (mixed && options.products == ProductPath::clblast)
+    throw ArgumentError("--precision mixed works with --products own only, not with clblast");
   if (options.memory_limit == 0) options.memory_limit = default_memory_limit();
 }
 

@@ -17,7 +17,9 @@ namespace moclean::cli {
 struct BackendOptions {
   std::string backend = "opencl";  ///< "opencl" | "reference"
   std::string device;
+  std::optional<KernelForm> form;       ///< default: that of the tuning
   std::optional<ProductPath> products;  ///< default: those of the tuning
+  bool former_spelling = false;         ///< `--products group`, until complete_backend()
   Precision precision = Precision::f64;
   bool use_tuning = true;  ///< what `moclean tune` has found
   int jobs = 1;
@@ -27,7 +29,8 @@ struct BackendOptions {
 /// The group of these options in a command's help.
 inline constexpr const char* backend_group = "Where it is computed";
 
-/// Declares --backend, --device, --products, --precision, --no-tuning, --jobs and --memory-limit.
+/// Declares --backend, --device, --form, --products, --precision, --no-tuning, --jobs and
+/// --memory-limit.
 void add_backend_options(CLI::App& command, BackendOptions& options);
 
 /// Finishes what the parser cannot express. Throws ArgumentError for options that do not go

@@ -17,7 +17,7 @@ Norms<Real>::Norms(const Device& device, const Tuning& tuning)
       program_(device, kernel_source::norms, common_defines(device, number_type<Real>)),
       block_norms_(program_, "block_norms"),
       segment_norms_(program_, "segment_norms") {
-  if (tuning.products == ProductPath::group)
+  if (tuning.form == KernelForm::gpu)
     work_group_ = fit_work_group(in_groups_, device, tuning.work_group);
 }
 

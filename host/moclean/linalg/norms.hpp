@@ -9,7 +9,7 @@ namespace moclean {
 
 /// Norms of the active segments of a stacked matrix of Real, each summed in an order that depends
 /// on the segment alone: by a work-item per block of rows (kernels/norms.cl), or with
-/// ProductPath::group by a work-group (kernels/norms_group.cl).
+/// KernelForm::gpu by a work-group (kernels/norms_group.cl).
 template <class Real>
 class Norms {
  public:

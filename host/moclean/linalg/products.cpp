@@ -6,11 +6,10 @@
 namespace moclean {
 namespace {
 
-std::variant<OwnProducts, ClblastProducts, GroupProducts> make_products(ProductPath path,
-                                                                        const Device& device,
+std::variant<OwnProducts, ClblastProducts, GroupProducts> make_products(const Device& device,
                                                                         const Tuning& tuning) {
-  if (path == ProductPath::clblast) return ClblastProducts(device);
-  if (path == ProductPath::group) return GroupProducts(device, tuning.work_group);
+  if (tuning.products == ProductPath::clblast) return ClblastProducts(device);
+  if (tuning.form == KernelForm::gpu) return GroupProducts(device, tuning.work_group);
   return OwnProducts(device, tuning);
 }
 
@@ -93,8 +92,8 @@ void OwnProducts::compose(const Batch& batch, const Buffer<double>& p, const Buf
       square_tiles(batch), batch.device_segments(), batch.device_active(), p, z, c);
 }
 
-Products::Products(ProductPath path, const Device& device, const Tuning& tuning)
-    : path_(path), products_(make_products(path, device, tuning)) {}
+Products::Products(const Device& device, const Tuning& tuning)
+    : products_(make_products(device, tuning)) {}
 
 void Products::gram(const Batch& batch, const Buffer<double>& x, Buffer<double>& g, GramOf which) {
   std::visit([&](auto& products) { products.gram(batch, x, g, which); }, products_);

@@ -11,7 +11,7 @@ namespace moclean {
 Defines product_defines(const Device& device, NumberType type = NumberType::float64,
                         const Tuning& tuning = {});
 
-/// Products of our own kernels (kernels/products.cl).
+/// Products of our own kernels in the CPU form (kernels/products.cl).
 class OwnProducts {
  public:
   explicit OwnProducts(const Device& device, const Tuning& tuning = {});
@@ -71,9 +71,8 @@ class ClblastProducts {
 /// All are enqueued, none waits. The result for a segment does not depend on its neighbours.
 class Products {
  public:
-  Products(ProductPath path, const Device& device, const Tuning& tuning = {});
-
-  ProductPath path() const { return path_; }
+  /// Those that `tuning` asks for by its `products` and, of our own, its `form`.
+  explicit Products(const Device& device, const Tuning& tuning = {});
 
   void gram(const Batch& batch, const Buffer<double>& x, Buffer<double>& g,
             GramOf which = GramOf::all);
@@ -87,7 +86,6 @@ class Products {
                Buffer<double>& c);
 
  private:
-  ProductPath path_;
   std::variant<OwnProducts, ClblastProducts, GroupProducts> products_;
 };
 

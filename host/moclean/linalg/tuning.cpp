@@ -22,16 +22,20 @@ constexpr int most_default_queues = 4;
 
 }  // namespace
 
-std::string to_string(ProductPath path) {
-  if (path == ProductPath::group) return "group";
-  return path == ProductPath::own ? "own" : "clblast";
+std::string to_string(KernelForm form) { return form == KernelForm::cpu ? "cpu" : "gpu"; }
+
+KernelForm parse_kernel_form(const std::string& text) {
+  if (text == "cpu") return KernelForm::cpu;
+  if (text == "gpu") return KernelForm::gpu;
+  throw ArgumentError("the form of the kernels is cpu or gpu, not '" + text + "'");
 }
+
+std::string to_string(ProductPath path) { return path == ProductPath::own ? "own" : "clblast"; }
 
 ProductPath parse_product_path(const std::string& text) {
   if (text == "own") return ProductPath::own;
   if (text == "clblast") return ProductPath::clblast;
-  if (text == "group") return ProductPath::group;
-  throw ArgumentError("products are computed by own, clblast or group, not by '" + text + "'");
+  throw ArgumentError("products are own or those of clblast, not '" + text + "'");
 }
 
 std::string to_string(EigenForm form) { return form == EigenForm::lanes ? "lanes" : "group"; }
@@ -54,22 +58,23 @@ void check(const Tuning& tuning) {
 
 Tuning default_tuning(const DeviceInfo& device) {
   if (device.kind == DeviceKind::gpu)
-    return {.products = ProductPath::group, .work_group = 64, .eigen = EigenForm::group};
+    return {.form = KernelForm::gpu, .work_group = 64, .eigen = EigenForm::group};
   if (device.kind != DeviceKind::cpu) return {};
   return {.queues = std::clamp(device.compute_units, 1, most_default_queues)};
 }
 
 bool same_bits(const Tuning& a, const Tuning& b) {
-  return a.products == b.products && a.eigen == b.eigen;
+  return a.form == b.form && a.products == b.products && a.eigen == b.eigen;
 }
 
 std::string to_string(const Tuning& tuning) {
   return fmt::format(
-      "tile {} x {}, sweep {} rows, panel {}, products {}{}, eigensolver {}, batch {}, queues {}",
+      "tile {} x {}, sweep {} rows, panel {}, form {}{}, products {}, eigensolver {}, batch {}, "
+      "queues {}",
       tuning.tile_rows, tuning.tile_vectors, tuning.sweep_rows, tuning.panel,
-      to_string(tuning.products),
-      tuning.products == ProductPath::group ? fmt::format(" of {}", tuning.work_group) : "",
-      to_string(tuning.eigen),
+      to_string(tuning.form),
+      tuning.form == KernelForm::gpu ? fmt::format(" of {}", tuning.work_group) : "",
+      to_string(tuning.products), to_string(tuning.eigen),
       tuning.batch_segments > 0 ? std::to_string(tuning.batch_segments) : "any", tuning.queues);
 }
 

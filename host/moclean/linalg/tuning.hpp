@@ -2,18 +2,30 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "moclean/device/device.hpp"
 
 namespace moclean {
 
-/// Who computes the matrix products: our kernels in explicit vectors, for CPUs; CLBlast; or our
-/// kernels in work-groups, for GPUs. `group` is also the form of what lies between two products.
-enum class ProductPath { own, clblast, group };
+/// Which of the two forms of our kernels runs, for all but the eigensolver. `cpu`: one work-item
+/// does what fills a core, in explicit vectors; `gpu`: a work-group shares it (docs/gpu.md).
+enum class KernelForm { cpu, gpu };
+
+std::string to_string(KernelForm form);
+
+/// Reads `cpu` or `gpu`; throws ArgumentError for anything else.
+KernelForm parse_kernel_form(const std::string& text);
+
+/// Whose matrix products: those of our kernels, in the form chosen, or those of CLBlast.
+enum class ProductPath { own, clblast };
+
+/// What command lines and files of earlier versions call KernelForm::gpu with products of our own.
+inline constexpr std::string_view former_gpu_products = "group";
 
 std::string to_string(ProductPath path);
 
-/// Reads `own`, `clblast` or `group`; throws ArgumentError for anything else.
+/// Reads `own` or `clblast`; throws ArgumentError for anything else.
 ProductPath parse_product_path(const std::string& text);
 
 /// How the eigensolver divides its work: matrices in the lanes of vectors (SymmetricEigen), or a
@@ -29,8 +41,8 @@ EigenForm parse_eigen_form(const std::string& text);
 ///
 /// tile_rows, tile_vectors, sweep_rows, panel, work_group, batch_segments and queues leave every
 /// bit of A and E as it is: each entry is summed in the same order whatever their values. Only the
-/// reported residual, a sum over tiles, may change in its last digits. products and eigen round
-/// differently; results agree within the bounds of moclean/denoise/agreement.hpp.
+/// reported residual, a sum over tiles, may change in its last digits. form, products and eigen
+/// round differently; results agree within the bounds of moclean/denoise/agreement.hpp.
 struct Tuning {
   int tile_rows = 8;     ///< of a register tile, 1 .. 16
   int tile_vectors = 3;  ///< across a register tile, 1 .. 8
@@ -40,9 +52,10 @@ struct Tuning {
   /// Vectors of columns of the eigenvectors that one work-item transforms (lanes only), 1 .. 16:
   /// 4 x 8 columns of 93 rows fill three quarters of that cache.
   int panel = 4;
+  KernelForm form = KernelForm::cpu;
   ProductPath products = ProductPath::own;
-  /// Work-items of a work-group of products in groups, 16 .. 256: rounded down to a power of two
-  /// and to what the device can run.
+  /// Work-items of a work-group of the GPU form, 16 .. 256: rounded down to a power of two and to
+  /// what the device can run.
   int work_group = 256;
   EigenForm eigen = EigenForm::lanes;
   /// Most segments of a batch, as far as they fit the memory; 0: as many as suit the device's
@@ -57,15 +70,16 @@ struct Tuning {
 /// Throws ArgumentError naming the first choice out of its range.
 void check(const Tuning& tuning);
 
-/// What is sound on a device before anything was measured: on a GPU the group forms of eigensolver
-/// and products, and one queue; on a CPU a queue per compute unit, up to four.
+/// What is sound on a device before anything was measured: on a GPU the forms for it, of the
+/// eigensolver too, and one queue; on a CPU a queue per compute unit, up to four.
 Tuning default_tuning(const DeviceInfo& device);
 
-/// Whether two tunings give the same bits of A and E: the same products and form of eigensolver.
+/// Whether two tunings give the same bits of A and E: the same form, products and
+/// form of the eigensolver.
 bool same_bits(const Tuning& a, const Tuning& b);
 
-/// One line: `tile 8 x 3, sweep 32 rows, panel 4, products own, eigensolver lanes, batch any,
-/// queues 2`.
+/// One line: `tile 8 x 3, sweep 32 rows, panel 4, form cpu, products own, eigensolver lanes, batch
+/// any, queues 2`.
 std::string to_string(const Tuning& tuning);
 
 }  // namespace moclean

@@ -67,7 +67,7 @@ ConjugateGradients::ConjugateGradients(const Device& device, const Tuning& tunin
       factor_(program_, "factor"),
       start_(program_, "start"),
       update_(program_, "update") {
-  if (tuning.products == ProductPath::group)
+  if (tuning.form == KernelForm::gpu)
     work_group_ = fit_work_group(groups_, device, tuning.work_group);
   else
     tiles_.emplace(device, tuning);

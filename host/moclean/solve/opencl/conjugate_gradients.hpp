@@ -22,7 +22,7 @@ struct ConjugateGradientsMemory {
 /// Preconditioned conjugate gradients for S = argmin sum W (D - S)^2 + tr(P Delta S R (Delta S)')
 /// of the segments of a batch, none of them wide. A search direction and its product are found by
 /// register tiles, a work-item per block of rows (kernels/search_direction.cl), or with
-/// ProductPath::group by work-groups (kernels/search_direction_group.cl).
+/// KernelForm::gpu by work-groups (kernels/search_direction_group.cl).
 class ConjugateGradients {
  public:
   using Memory = ConjugateGradientsMemory;

@@ -37,8 +37,8 @@ EntrySteps<Real>::GroupPrograms::GroupPrograms(const Device& device, int work_gr
 
 template <class Real>
 EntrySteps<Real>::EntrySteps(const Device& device, const Tuning& tuning) {
-  if (tuning.products == ProductPath::group) {
-    if (Memory::mixed) throw ArgumentError("mixed precision has no kernels in work-groups");
+  if (tuning.form == KernelForm::gpu) {
+    if (Memory::mixed) throw ArgumentError("mixed precision works with form cpu only");
     work_group_ = fit_work_group(in_groups_, device, tuning.work_group);
     return;
   }
@@ -67,13 +67,14 @@ void EntrySteps<Real>::form(const Batch& batch, Memory& m, GramOf which) {
 }
 
 template <class Real>
-void EntrySteps<Real>::sweep(const Batch& batch, Memory& m, const Buffer<Real>& W,
-                             const Buffer<Real>& V, const Buffer<Real>& Z, const Buffer<Real>& f,
+void EntrySteps<Real>::sweep(const Batch& batch, Memory& m, const Multiplier<Real>& by,
                              bool with_gram) {
   sweep_->with([&] { return sweep_work(batch, host_copy(m.states), with_gram, sizeof(Real)); })(
       grid(batch), batch.device_segments(), batch.device_blocks(), batch.active_blocks(), m.states,
-      m.D, m.X, m.T, m.A, m.E, W, V, Z, f, m.scratch, cl_int{with_gram}, m.G, m.partial_grams,
-      m.partial_squares, m.partial_sparse);
+      m.D, m.X, m.T, m.A, m.E,                  // by entries
+      by.W, by.V, by.Z, by.f, m.scratch,        // A = XW of a chunk
+      cl_int{with_gram}, m.G, m.partial_grams,  // of the next X
+      m.partial_squares, m.partial_sparse);     // what the iteration reports
 }
 
 template <class Real>

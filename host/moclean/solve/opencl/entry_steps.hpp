@@ -11,16 +11,22 @@ namespace moclean::opencl {
 /// -D options of the programs that go over chunks of rows (kernels/sweep.cl, kernels/grams.cl).
 Defines sweep_defines(const Device& device, NumberType type, const Tuning& tuning);
 
+/// What X is multiplied by in A = XW: W itself, or at low rank V diag(f) Z, of all segments.
+template <class Real>
+struct Multiplier {
+  const Buffer<Real>&W, &V, &Z, &f;
+};
+
 /// The steps of robust PCA that go over the entries of the stacked matrices of a batch, in one of
 /// two forms: explicit vectors, a work-item per block of rows, with the products between two
-/// eigenproblems in the same sweep (kernels/sweep.cl); or, with ProductPath::group, a work-group
+/// eigenproblems in the same sweep (kernels/sweep.cl); or, with KernelForm::gpu, a work-group
 /// per block, where every product is a step of its own (kernels/sweep_group.cl).
 template <class Real>
 class EntrySteps {
  public:
   using Memory = RobustPcaMemory<Real>;
 
-  /// Throws ArgumentError if mixed precision is asked for in work-groups, which has no such form.
+  /// Throws ArgumentError for mixed precision in the GPU form, which there is not.
   EntrySteps(const Device& device, const Tuning& tuning);
 
   /// Y = dual_scale D, and A = 0.
@@ -29,10 +35,9 @@ class EntrySteps {
   /// X, and E of order ea; of the wide segments, or of all.
   void form(const Batch& batch, Memory& m, GramOf which);
 
-  /// A = XW and all that shrink() does, without work-groups only: A = X `W`, where W = `V` diag(f)
-  /// `Z` at low rank. `with_gram`: adds the Gram matrices of the next X to m.G.
-  void sweep(const Batch& batch, Memory& m, const Buffer<Real>& W, const Buffer<Real>& V,
-             const Buffer<Real>& Z, const Buffer<Real>& f, bool with_gram);
+  /// A = XW and all that shrink() does, in the CPU form only. `with_gram`: adds the Gram matrices
+  /// of the next X to m.G.
+  void sweep(const Batch& batch, Memory& m, const Multiplier<Real>& by, bool with_gram);
 
   /// E, Y+ and the residual from A. Where entries are missing D becomes A.
   void shrink(const Batch& batch, Memory& m);

@@ -60,7 +60,7 @@ struct MatrixCompletionSolver::Run {
 
 MatrixCompletionSolver::MatrixCompletionSolver(const Device& device, const Tuning& tuning)
     : device_(device),
-      products_((moclean::check(tuning), tuning.products), device, tuning),
+      products_(device, (moclean::check(tuning), tuning)),
       eigen_(device, tuning),
       program_(device, kernel_source::completion, common_defines(device)),
       update_(program_, "update_completion") {}

@@ -129,7 +129,7 @@ struct MatrixNormalSolver::Run {
 MatrixNormalSolver::MatrixNormalSolver(const Device& device, const Tuning& tuning, int jobs)
     : device_(device),
       jobs_(jobs),
-      products_((moclean::check(tuning), tuning.products), device, tuning),
+      products_(device, (moclean::check(tuning), tuning)),
       eigen_(device, tuning),
       gradients_(device, tuning) {}
 

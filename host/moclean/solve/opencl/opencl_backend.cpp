@@ -37,12 +37,16 @@ std::uint64_t shared_cache(const DeviceInfo& device) {
 
 Tuning tuning_of(const Device& device, const OpenClOptions& options) {
   Tuning tuning = options.tuning.value_or(default_tuning(device.info()));
-  const bool mixed = options.precision == Precision::mixed;
-  if (mixed && options.products && *options.products != ProductPath::own)
-    throw ArgumentError("mixed precision has products of its own (own), not " +
-                        to_string(*options.products));
-  if (mixed) tuning.products = ProductPath::own;
-  if (options.products) tuning.products = *options.products;
+  if (options.precision == Precision::mixed) {
+    if (options.form == KernelForm::gpu)
+      throw ArgumentError("mixed precision works with form cpu only, not with gpu");
+    if (options.products == ProductPath::clblast)
+      throw ArgumentError("mixed precision works with products own only, not with clblast");
+    tuning.form = KernelForm::cpu;
+    tuning.products = ProductPath::own;
+  }
+  tuning.form = options.form.value_or(tuning.form);
+  tuning.products = options.products.value_or(tuning.products);
   return tuning;
 }
 
@@ -127,7 +131,8 @@ OpenClBackend::OpenClBackend(const Device& device, const OpenClOptions& options)
 OpenClBackend::~OpenClBackend() = default;
 
 std::string OpenClBackend::name() const {
-  return fmt::format("opencl ({}, products {}{})", device_.info().name, to_string(tuning_.products),
+  return fmt::format("opencl ({}, form {}, products {}{})", device_.info().name,
+                     to_string(tuning_.form), to_string(tuning_.products),
                      options_.precision == Precision::mixed ? ", mixed precision" : "");
 }
 

@@ -14,7 +14,8 @@
 namespace moclean {
 
 struct OpenClOptions {
-  std::optional<ProductPath> products = {};  ///< overrides that of `tuning`
+  std::optional<KernelForm> form = {};       ///< overrides that of `tuning`
+  std::optional<ProductPath> products = {};  ///< overrides those of `tuning`
   Precision precision = Precision::f64;
   /// Bytes of device memory the batches in flight may take together; larger input is solved in more
   /// batches, and in fewer at a time. 0: three quarters of the device's memory.
@@ -33,8 +34,9 @@ inline constexpr double mixed_tolerance = 1e-6;
 class OpenClBackend final : public Backend {
  public:
   /// `device` has to outlive the backend. Throws ArgumentError for a tuning out of its range, and
-  /// for `products` other than ProductPath::own in mixed precision; a `tuning` that asks for others
-  /// gets these there. Compiles nothing, see prepare().
+  /// for `form` gpu or `products` of CLBlast in mixed precision, which has neither; a `tuning` that
+  /// asks for them gets the form cpu and products of our own there. Compiles nothing, see
+  /// prepare().
   explicit OpenClBackend(const Device& device, const OpenClOptions& options = {});
   ~OpenClBackend() override;
 

@@ -61,7 +61,7 @@ template <class Real>
 RobustPcaSolver<Real>::RobustPcaSolver(const Device& device, const Tuning& tuning)
     : device_(device),
       sweep_rows_((check(tuning), tuning.sweep_rows)),
-      products_(tuning.products, device, tuning),
+      products_(device, tuning),
       eigen_(device, tuning, mixed ? 1e-8 : 1e-12),  // far below what the iteration makes of it
       norms_(device, tuning),
       entries_(device, tuning),
@@ -69,7 +69,8 @@ RobustPcaSolver<Real>::RobustPcaSolver(const Device& device, const Tuning& tunin
       start_state_(steps_, "start_state"),
       threshold_(steps_, "threshold"),
       advance_(steps_, "advance") {
-  if (tuning.products == ProductPath::own) grams_.emplace(device, tuning);
+  const bool fuses = tuning.form == KernelForm::cpu && tuning.products == ProductPath::own;
+  if (fuses) grams_.emplace(device, tuning);
 }
 
 template <class Real>
@@ -119,11 +120,11 @@ void RobustPcaSolver<Real>::sum_partial_grams(const Batch& batch, Memory& m, Buf
     grams_->sum(per_row(batch), batch.device_segments(), batch.device_active(), m.partial_grams, g);
 }
 
-// Whether an iteration is one sweep over the rows, or one matrix after the other: by a library, in
-// work-groups, or where entries are missing.
+// Whether an iteration is one sweep over the rows, or one matrix after the other: with products of
+// CLBlast, in the GPU form, or where entries are missing.
 template <class Real>
 bool RobustPcaSolver<Real>::swept(const Memory& m) const {
-  return products_.path() == ProductPath::own && !m.missing;
+  return grams_ && !m.missing;
 }
 
 // Single precision leaves nothing of X that grading could save.
@@ -140,28 +141,36 @@ void RobustPcaSolver<Real>::start(const Batch& batch, Memory& m, const RobustPca
   m.iteration = 0;
   gram_of_data(batch, m);
   eigen_.all_values(batch, m.V, m.eigenvalues);
-  if (graded(m.tau)) eigen_.all_vectors(batch, m.V, m.Z);  // the first iteration needs a basis
+  if (graded(m.tau)) eigen_.all_vectors(batch, m.V, m.Z);   // the first iteration needs a basis
+  const bool pure = !m.ea && !graded(m.tau) && !m.missing;  // X has the singular vectors of D
   start_state_(per_segment(batch), batch.device_segments(), batch.device_active(),
                batch.active_count(), m.eigenvalues, m.largest, method.lambda, method.lambda_scale,
-               method.mu0_factor, method.mu_max_factor, method.rho, cl_int{m.ea},
-               cl_int{!m.ea && !graded(m.tau) && !m.missing}, method.max_iterations, m.keep_below,
-               m.states, m.dual, m.decompose);
+               method.mu0_factor, method.mu_max_factor, method.rho, cl_int{m.ea}, cl_int{pure},
+               method.max_iterations, m.keep_below, m.states, m.dual, m.decompose);
   entries_.start(batch, m);
 }
 
-// X where it is needed as a whole, and its Gram matrix where the last sweep has not formed it.
+template <class Real>
+typename RobustPcaSolver<Real>::GramSource RobustPcaSolver<Real>::gram_source(
+    const Memory& m) const {
+  if (graded(m.tau)) return GramSource::rotated;
+  if (mixed) return GramSource::single_floats;
+  // The first X of order ae is pure (kernels/robust_pca.cl) and takes no eigenproblem.
+  const bool first = m.iteration == 0 && m.ea;
+  return swept(m) && !first ? GramSource::last_sweep : GramSource::whole_matrix;
+}
+
+// X where it is needed as a whole, and its Gram matrix but for graded iterations.
 template <class Real>
 void RobustPcaSolver<Real>::prepare(const Batch& batch, Memory& m) {
-  const bool fused = !mixed && swept(m);
-  const bool first = m.iteration == 0 && m.ea;
-  const bool whole = graded(m.tau) || !swept(m) || (fused && first);
+  const GramSource source = gram_source(m);
+  const bool whole = source == GramSource::whole_matrix || source == GramSource::rotated;
   if (whole || batch.has_wide()) entries_.form(batch, m, whole ? GramOf::all : GramOf::wide);
-  if (graded(m.tau)) return;
   if constexpr (mixed)
     gram_of_floats(batch, m, m.X, true);
-  else if (!fused || first)
+  else if (source == GramSource::whole_matrix)
     products_.gram(batch, m.X, m.V);
-  else if (batch.has_wide())
+  else if (source == GramSource::last_sweep && batch.has_wide())
     products_.gram(batch, m.X, m.V, GramOf::wide);
 }
 
@@ -195,19 +204,19 @@ void RobustPcaSolver<Real>::threshold(const Batch& batch, Memory& m, bool low_ra
              m.wanted, m.terms);
 }
 
-// A = XW, E = soft(D - A + Y/mu, lambda/mu), Y+ = Y + mu (D - A - E), and the Gram matrix of X+.
+// A = XW, E = soft(D - A + Y/mu, lambda/mu), Y+ = Y + mu (D - A - E), and if the next iteration
+// takes it from here the Gram matrix of X+.
 template <class Real>
 void RobustPcaSolver<Real>::sweep(const Batch& batch, Memory& m, bool with_gram) {
-  const bool fused = with_gram && !mixed;
   products_.reconstruct(batch, m.Z, m.f, m.terms, m.W);
   if constexpr (mixed) {
     // What the sweep multiplies by, in single precision.
     grams_->narrow(per_row(batch), batch.device_segments(), batch.device_active(), m.states, m.W,
                    m.V, m.Z, m.f, m.W_real, m.V_real, m.Z_real, m.f_real);
-    entries_.sweep(batch, m, m.W_real, m.V_real, m.Z_real, m.f_real, fused);
+    entries_.sweep(batch, m, {m.W_real, m.V_real, m.Z_real, m.f_real}, with_gram);
   } else {
-    entries_.sweep(batch, m, m.W, m.V, m.Z, m.f, fused);
-    if (fused) sum_partial_grams(batch, m, m.G);
+    entries_.sweep(batch, m, {m.W, m.V, m.Z, m.f}, with_gram);
+    if (with_gram) sum_partial_grams(batch, m, m.G);
   }
 }
 
@@ -227,7 +236,7 @@ void RobustPcaSolver<Real>::iterate(const Batch& batch, Memory& m, const RobustP
   prepare(batch, m);
   decompose(batch, m, method);
   if (swept(m))
-    sweep(batch, m, !graded(next));
+    sweep(batch, m, !mixed && !graded(next));
   else
     apply_and_shrink(batch, m);
   // residual = |D - A - E|_F / |D|_F, mu = min(rho mu, mu_max)

@@ -43,7 +43,16 @@ class RobustPcaSolver {
     Kernel sum, of_floats, of_wide_floats, narrow;
   };
 
+  // Where the Gram matrix of an iteration is from.
+  enum class GramSource {
+    last_sweep,     // the sweep of the iteration before, which formed X by rows; wide segments: X
+    whole_matrix,   // X as a whole
+    single_floats,  // X in single precision, by rows
+    rotated         // B, X as a whole in the eigenvectors of the iteration before
+  };
+
   static bool graded(double tau);
+  GramSource gram_source(const Memory& m) const;
   bool swept(const Memory& m) const;
   std::vector<std::int32_t> load(const SegmentBatch& data, Index first, Index last,
                                  const Batch& batch, Memory& m);

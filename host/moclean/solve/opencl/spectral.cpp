@@ -46,7 +46,7 @@ std::vector<double> singular_values(const SegmentRecord& segment, std::span<cons
 
 SpectralSolver::SpectralSolver(const Device& device, const Tuning& tuning)
     : device_(device),
-      products_((moclean::check(tuning), tuning.products), device, tuning),
+      products_(device, (moclean::check(tuning), tuning)),
       eigen_(device, tuning) {}
 
 std::uint64_t SpectralSolver::bytes_of(Index rows, Index columns) const {

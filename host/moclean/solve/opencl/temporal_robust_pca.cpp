@@ -97,10 +97,10 @@ TemporalRobustPcaSolver::TemporalRobustPcaSolver(const Device& device, const Tun
                                                  int jobs)
     : device_(device),
       jobs_(jobs),
-      products_((moclean::check(tuning), tuning.products), device, tuning),
+      products_(device, (moclean::check(tuning), tuning)),
       eigen_(device, tuning),
       banded_(device, difference) {
-  if (tuning.products == ProductPath::group)
+  if (tuning.form == KernelForm::gpu)
     work_group_ = fit_work_group(in_groups_, device, tuning.work_group);
   else
     in_vectors_.emplace(device, kernel_source::temporal, common_defines(device));

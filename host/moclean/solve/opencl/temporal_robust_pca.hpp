@@ -16,7 +16,7 @@ namespace moclean::opencl {
 /// steps are those of solve/reference/temporal_robust_pca.cpp, in the same order. The host looks at
 /// the singular values of every iteration and asks for the vectors of those above nu/mu only. Steps
 /// over entries are taken by a work-item per block of rows (kernels/temporal.cl), or with
-/// ProductPath::group by a work-group (kernels/temporal_group.cl).
+/// KernelForm::gpu by a work-group (kernels/temporal_group.cl).
 class TemporalRobustPcaSolver {
  public:
   /// Throws ArgumentError for a tuning out of its range.
