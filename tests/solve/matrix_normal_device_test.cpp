@@ -229,7 +229,7 @@ TEST_P(MatrixNormalFirstSteps, AgreeOnATinyProblem) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Forms, MatrixNormalFirstSteps,
-                         testing::Values(BackendKind::opencl_cpu, BackendKind::opencl_gpu_group64),
+                         testing::Values(BackendKind::opencl_cpu, BackendKind::opencl_gpu64),
                          [](const auto& parameter) { return to_string(parameter.param); });
 
 std::string name_of(const testing::TestParamInfo<MatrixNormalAgreement::ParamType>& parameter) {

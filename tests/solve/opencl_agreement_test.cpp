@@ -80,7 +80,7 @@ TEST_P(OpenClFirstIterations, AgreeOnATinyProblem) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Forms, OpenClFirstIterations,
-                         testing::Values(BackendKind::opencl_cpu, BackendKind::opencl_gpu_group64),
+                         testing::Values(BackendKind::opencl_cpu, BackendKind::opencl_gpu64),
                          [](const auto& parameter) { return to_string(parameter.param); });
 
 class OpenClEdgeCases : public testing::TestWithParam<std::tuple<BackendKind, UpdateOrder>> {

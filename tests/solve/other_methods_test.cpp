@@ -235,7 +235,7 @@ TEST_P(OtherMethodFirstIterations, AgreeOnATinyProblem) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Forms, OtherMethodFirstIterations,
-                         testing::Values(BackendKind::opencl_cpu, BackendKind::opencl_gpu_group64),
+                         testing::Values(BackendKind::opencl_cpu, BackendKind::opencl_gpu64),
                          [](const auto& parameter) { return to_string(parameter.param); });
 
 std::string name_of(const testing::TestParamInfo<OtherMethodAgreement::ParamType>& parameter) {
