@@ -19,7 +19,8 @@ using ::testing::Not;
 
 // A run of the reference that shows its progress: many small segments, so that one is soon done
 // also under sanitizers; 10 s where it is stopped, a second where not.
-std::vector<std::string> long_run(const TemporaryFolder& folder, Index frames) {
+std::vector<std::string> long_run(const TemporaryFolder& folder, Index frames,
+                                  const std::string& segment_length = "40") {
   return {"denoise",
           folder.write("walk.npy", synthetic_walk(frames)),
           "-o",
@@ -29,7 +30,7 @@ std::vector<std::string> long_run(const TemporaryFolder& folder, Index frames) {
           "--method",
           "slra",
           "--segment-length",
-          "40",
+          segment_length,
           "--backend",
           "reference",
           "--jobs",
@@ -127,7 +128,7 @@ TEST(Interrupt, IsIgnoredWhereItWasIgnoredBefore) {
 
 TEST(Progress, IsShownOnATerminalAndClearedAtTheEnd) {
   const TemporaryFolder folder;
-  Program program(long_run(folder, 2000), {.device = "", .terminal = true});
+  Program program(long_run(folder, 800, "200"), {.device = "", .terminal = true});
 
   EXPECT_TRUE(program.shows("s left"));
 
@@ -138,7 +139,7 @@ TEST(Progress, IsShownOnATerminalAndClearedAtTheEnd) {
 
 TEST(Progress, IsAbsentFromAFileAndWithQuiet) {
   const TemporaryFolder folder;
-  std::vector<std::string> arguments = long_run(folder, 1000);
+  std::vector<std::string> arguments = long_run(folder, 200, "200");
 
   const Outcome to_file = run(arguments);
   arguments.push_back("--quiet");
