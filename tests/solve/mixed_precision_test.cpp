@@ -65,11 +65,11 @@ INSTANTIATE_TEST_SUITE_P(Shapes, MixedPrecision,
                                           testing::Values(Shape{3, 5}, Shape{200, 93},
                                                           Shape{25, 93}, Shape{64, 64})));
 
-// All kernels, in so few steps that Oclgrind, which interprets them, is soon done; 40 rows are two
+// All kernels, in so few steps that Oclgrind, which interprets them, is soon done; 257 rows are two
 // blocks.
 TEST(MixedPrecisionFirstIterations, AgreeOnATinyProblem) {
   OpenClBackend backend(test::device(), {.precision = Precision::mixed});
-  const SegmentBatch data = test::planted_batch({.columns = 5, .rank = 1}, {3, 40});
+  const SegmentBatch data = test::planted_batch({.columns = 5, .rank = 1}, {3, 257});
   const RobustPca method{.tolerance = mixed_tolerance, .max_iterations = 2};
 
   const Solution device = backend.solve(data, method);

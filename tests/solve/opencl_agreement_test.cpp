@@ -70,12 +70,12 @@ INSTANTIATE_TEST_SUITE_P(
                      testing::Values(Shape{3, 5}, Shape{25, 93}, Shape{70, 33})),
     name_of);
 
-// All kernels, in so few steps that Oclgrind, which interprets them, is soon done; 40 rows are two
+// All kernels, in so few steps that Oclgrind, which interprets them, is soon done; 257 rows are two
 // blocks.
 class OpenClFirstIterations : public testing::TestWithParam<BackendKind> {};
 
 TEST_P(OpenClFirstIterations, AgreeOnATinyProblem) {
-  expect_agreement(test::planted_batch({.columns = 5, .rank = 1}, {3, 40}), {.max_iterations = 2},
+  expect_agreement(test::planted_batch({.columns = 5, .rank = 1}, {3, 257}), {.max_iterations = 2},
                    GetParam());
 }
 
