@@ -9,10 +9,9 @@ endif()
 if(MOCLEAN_SANITIZE)
   # Of an access beyond an object or through a null pointer AddressSanitizer tells, too. Without these checks
   # sources that use Eigen compile in 0.6 of the time (docs/decisions/ci-time.md).
-  set(dear_checks null alignment pointer-overflow object-size)
-  list(JOIN dear_checks "," dear_checks)
   set(MOCLEAN_NO_SANITIZER -fno-sanitize=all)  # where a source only calls Eigen
-  target_compile_options(moclean_flags INTERFACE -fsanitize=${MOCLEAN_SANITIZE} -fno-sanitize=${dear_checks}
+  target_compile_options(moclean_flags INTERFACE -fsanitize=${MOCLEAN_SANITIZE}
+                         -fno-sanitize=null,alignment,pointer-overflow,object-size
                          -fno-omit-frame-pointer -fno-sanitize-recover=all
                          $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)  # GCC 12: false alarms in <regex>
   target_link_options(moclean_flags INTERFACE -fsanitize=${MOCLEAN_SANITIZE})

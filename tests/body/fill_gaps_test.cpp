@@ -2,10 +2,11 @@
 #include "moclean/body/fill_gaps.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
+
+#include "support/nan.hpp"
 
 namespace moclean {
 namespace {
@@ -40,9 +41,7 @@ Matrix sliding(Matrix samples, double amplitude) {
 }
 
 Matrix without(Matrix samples, Index joint, Index first, Index last) {
-  samples.middleRows(first, last - first)
-      .middleCols(3 * joint, 3)
-      .setConstant(std::numeric_limits<double>::quiet_NaN());
+  samples.middleRows(first, last - first).middleCols(3 * joint, 3).setConstant(test::nan);
   return samples;
 }
 

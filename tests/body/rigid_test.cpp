@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <limits>
 
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
@@ -12,6 +11,7 @@
 
 #include "support/hand.hpp"
 #include "support/limbs.hpp"
+#include "support/nan.hpp"
 
 namespace moclean {
 namespace {
@@ -265,7 +265,7 @@ TEST(RigidFlags, NeedAJumpWhereNoDistanceIsExact) {
 
 TEST(RigidFlags, SayNothingOfMissingJoints) {
   Matrix samples = test::swinging_limbs(frames, joints);
-  samples.middleRows(50, 40).middleCols(9, 3).setConstant(std::numeric_limits<double>::quiet_NaN());
+  samples.middleRows(50, 40).middleCols(9, 3).setConstant(test::nan);
   const Learned learned(samples);
 
   EXPECT_FALSE(learned.flags().bad.any());

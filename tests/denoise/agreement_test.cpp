@@ -6,11 +6,13 @@
 
 #include "moclean/core/error.hpp"
 
+#include "support/nan.hpp"
 #include "support/tolerance.hpp"
 
 namespace moclean {
 namespace {
 
+using test::nan;
 using testing::ThrowsMessage;
 
 Denoised result_of(const Matrix& low_rank, const Matrix& sparse) {
@@ -94,7 +96,7 @@ TEST(Agreement, MixedPrecisionHasWiderBounds) {
 
 TEST(Agreement, TakesWhatBothLeaveMissingForEqual) {
   Matrix left = Matrix::Ones(2, 2);
-  left(1, 1) = std::numeric_limits<double>::quiet_NaN();
+  left(1, 1) = nan;
   const Denoised reference = result_of(left, Matrix::Ones(2, 2));
 
   EXPECT_EQ(agreement(reference, reference).low_rank, 0);
@@ -103,7 +105,6 @@ TEST(Agreement, TakesWhatBothLeaveMissingForEqual) {
 }
 
 TEST(Agreement, IsNeverWithinBoundsWithNaN) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
   const Denoised reference = result_of(Matrix::Ones(2, 2), Matrix::Ones(2, 2));
 
   EXPECT_FALSE(

@@ -1,7 +1,5 @@
 #include "moclean/denoise/low_rank.hpp"
 
-#include <limits>
-
 #include <gmock/gmock.h>
 
 #include "moclean/core/error.hpp"
@@ -10,12 +8,14 @@
 #include "moclean/solve/reference/reference_backend.hpp"
 
 #include "support/matrix.hpp"
+#include "support/nan.hpp"
 #include "support/synthetic_walk.hpp"
 #include "support/tolerance.hpp"
 
 namespace moclean {
 namespace {
 
+using test::nan;
 using testing::ElementsAre;
 using testing::ThrowsMessage;
 
@@ -148,7 +148,7 @@ TEST(LowRankDenoiser, AcceptsNoTakes) { EXPECT_TRUE(denoise({}, {}).empty()); }
 
 TEST(LowRankDenoiser, RefusesMissingSamplesByTakeFrameAndColumn) {
   std::vector<Recording> takes = {noisy_walk(30, 1), noisy_walk(30, 2)};
-  takes[1].samples(7, 4) = std::numeric_limits<double>::quiet_NaN();
+  takes[1].samples(7, 4) = nan;
 
   ReferenceBackend backend;
   LowRankDenoiser denoiser({}, TruncatedSvd{}, backend);
@@ -159,7 +159,6 @@ TEST(LowRankDenoiser, RefusesMissingSamplesByTakeFrameAndColumn) {
 }
 
 TEST(LowRankDenoiser, LeavesAColumnThatWasNeverObservedMissingAndNamesIt) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
   Recording take = noisy_walk(60, 1);
   take.samples.col(4).setConstant(nan);
   take.samples.block(10, 9, 8, 3).setConstant(nan);

@@ -1,7 +1,6 @@
 #include "moclean/denoise/smooth_in_time.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <gtest/gtest.h>
 
@@ -9,6 +8,7 @@
 
 #include "support/limbs.hpp"
 #include "support/matrix.hpp"
+#include "support/nan.hpp"
 #include "support/synthetic_walk.hpp"
 
 namespace moclean {
@@ -81,7 +81,7 @@ TEST(SmoothInTime, SaysYesWhereMostIsMissing) {
   for (Index i = 0; i < samples.rows(); ++i)
     for (Index j = 0; j < samples.cols(); j += 3) {
       if (random.uniform() >= 0.6) continue;
-      samples.row(i).segment(j, 3).setConstant(std::numeric_limits<double>::quiet_NaN());
+      samples.row(i).segment(j, 3).setConstant(test::nan);
       if (random.uniform() < 0.5) zeros.row(i).segment(j, 3).setZero();
     }
 

@@ -15,6 +15,7 @@
 #include "formats/temporary_folder.hpp"
 #include "formats/tiny_files.hpp"
 #include "support/matrix.hpp"
+#include "support/nan.hpp"
 
 namespace moclean {
 namespace {
@@ -102,7 +103,7 @@ TEST(Csv, GivesBackTheSameBits) {
     while (std::isnan(x));
   clip.samples.row(0) << 0.0, -0.0, std::numeric_limits<double>::denorm_min(),
       std::numeric_limits<double>::max(), std::numeric_limits<double>::infinity(), 0.1, -1.0 / 3;
-  clip.samples(3, 2) = clip.samples(199, 6) = std::numeric_limits<double>::quiet_NaN();
+  clip.samples(3, 2) = clip.samples(199, 6) = test::nan;
   clip.columns = {"a.x",
                   "with, comma",
                   "with \"quotes\"",

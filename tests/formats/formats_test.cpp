@@ -4,7 +4,6 @@
 #include "moclean/formats/formats.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <set>
 
 #include <gmock/gmock.h>
@@ -16,6 +15,7 @@
 #include "formats/temporary_folder.hpp"
 #include "formats/tiny_files.hpp"
 #include "support/matrix.hpp"
+#include "support/nan.hpp"
 
 namespace moclean {
 namespace {
@@ -78,7 +78,7 @@ TEST(Formats, AreAllNamedWhereAnExtensionIsUnknown) {
 // The samples are the same bits whatever the format; all else is so if the format claims it.
 TEST(Formats, ReadBackWhatTheyWrite) {
   const TemporaryFolder folder;
-  const double gap = std::numeric_limits<double>::quiet_NaN();
+  const double gap = test::nan;
   for (const Format* format : formats()) {
     if (!can_read(*format) || !can_write(*format)) continue;
     SCOPED_TRACE(format->name);

@@ -13,6 +13,7 @@
 
 #include "formats/temporary_folder.hpp"
 #include "support/matrix.hpp"
+#include "support/nan.hpp"
 
 namespace moclean {
 namespace {
@@ -120,7 +121,7 @@ TEST(Npy, GivesBackTheSameBits) {
   Recording clip;
   clip.samples = test::random_matrix(50, 7, 3);
   clip.samples(0, 0) = -0.0;
-  clip.samples(4, 2) = std::numeric_limits<double>::quiet_NaN();
+  clip.samples(4, 2) = test::nan;
   clip.samples(5, 2) = std::numeric_limits<double>::infinity();
 
   write_recording(folder.path() / "x.npy", clip);

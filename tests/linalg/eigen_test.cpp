@@ -7,6 +7,7 @@
 #include "support/decompositions.hpp"
 #include "support/device.hpp"
 #include "support/matrix.hpp"
+#include "support/nan.hpp"
 #include "support/squares.hpp"
 #include "support/symmetric.hpp"
 #include "support/tolerance.hpp"
@@ -190,7 +191,7 @@ TEST(SymmetricEigen, DoesNotReadThePadding) {
   const SegmentBatch shape(3, {0, 3});
   const Batch batch(device, shape, 0, 1);
   const auto pitch = static_cast<Index>(padded(3));
-  std::vector<double> matrix(batch.square_size(), std::numeric_limits<double>::quiet_NaN());
+  std::vector<double> matrix(batch.square_size(), test::nan);
   const Eigen::Matrix3d expected{{2, 1, 0}, {1, 3, 1}, {0, 1, 4}};
   for (Index i = 0; i < 3; ++i)
     for (Index j = i; j < 3; ++j) matrix[static_cast<std::size_t>(pitch * i + j)] = expected(i, j);
@@ -208,8 +209,7 @@ TEST(SymmetricEigen, DoesNotReadThePadding) {
 }
 
 TEST(SymmetricEigen, ReportsAMatrixItCannotDecompose) {
-  EigenBatch batch(
-      {Matrix::Identity(5, 5), Matrix::Constant(5, 5, std::numeric_limits<double>::quiet_NaN())});
+  EigenBatch batch({Matrix::Identity(5, 5), Matrix::Constant(5, 5, test::nan)});
 
   EXPECT_THROW(batch.all(), DeviceError);
 }

@@ -5,6 +5,7 @@
 #include "support/decompositions.hpp"
 #include "support/device.hpp"
 #include "support/matrix.hpp"
+#include "support/nan.hpp"
 #include "support/squares.hpp"
 #include "support/symmetric.hpp"
 #include "support/tolerance.hpp"
@@ -12,7 +13,7 @@
 namespace moclean {
 namespace {
 
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+using test::nan;
 
 /// Eigenvectors in rows and eigenvalues of every matrix, with the padding.
 struct Decomposition {
@@ -27,16 +28,16 @@ Decomposition decompose(GroupEigen& eigen, const std::vector<Matrix>& matrices) 
   const SegmentBatch shape = test::batch_of(matrices);
   const Device& device = test::device();
   const Batch batch(device, shape, 0, shape.segments());
-  std::vector<double> squares(batch.square_size(), not_a_number);
+  std::vector<double> squares(batch.square_size(), nan);
   for (Index b = 0; b < shape.segments(); ++b) {
     const SegmentRecord& s = batch.segment(b);
     MatrixView(squares.data() + s.square, n, n, Eigen::OuterStride<>(s.order_pitch))
         .triangularView<Eigen::Upper>() = matrices[static_cast<std::size_t>(b)];
   }
   Buffer<double> a(device, std::span<const double>(squares));
-  std::ranges::fill(squares, not_a_number);
+  std::ranges::fill(squares, nan);
   Buffer<double> z(device, std::span<const double>(squares));
-  std::vector<double> values(batch.vector_size(), not_a_number);
+  std::vector<double> values(batch.vector_size(), nan);
   Buffer<double> d(device, std::span<const double>(values));
 
   eigen(batch, a, z, d);
@@ -306,8 +307,7 @@ TEST(GroupEigen, RefusesAMatrixTooLargeForLocalMemory) {
 }
 
 TEST(GroupEigen, ReportsAMatrixItCannotDecompose) {
-  const std::vector<Matrix> matrices = {Matrix::Identity(5, 5),
-                                        Matrix::Constant(5, 5, not_a_number)};
+  const std::vector<Matrix> matrices = {Matrix::Identity(5, 5), Matrix::Constant(5, 5, nan)};
 
   EXPECT_THROW(decompose({}, matrices), DeviceError);
 }

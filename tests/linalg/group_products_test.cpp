@@ -6,6 +6,7 @@
 
 #include "support/device.hpp"
 #include "support/matrix.hpp"
+#include "support/nan.hpp"
 #include "support/squares.hpp"
 #include "support/tolerance.hpp"
 
@@ -16,7 +17,7 @@ struct Shape {
   Index rows, columns;
 };
 
-constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+using test::nan;
 
 class GroupProductsTest : public testing::TestWithParam<std::tuple<int, Shape>> {
  protected:
@@ -35,8 +36,7 @@ class GroupProductsTest : public testing::TestWithParam<std::tuple<int, Shape>> 
 
   // Results start as NaN, so that what is not written shows.
   static Buffer<double> unwritten(std::size_t size) {
-    return Buffer<double>(test::device(),
-                          std::span<const double>(std::vector<double>(size, not_a_number)));
+    return Buffer<double>(test::device(), std::span<const double>(std::vector<double>(size, nan)));
   }
 
   std::vector<Matrix> squares_of(const Buffer<double>& buffer) const {
@@ -93,7 +93,7 @@ TEST_P(GroupProductsTest, ReconstructMatchesReferenceAndReadsNoMoreThanItsTerms)
   std::vector<std::int32_t> terms;
   for (Index b = 0; b < 3; ++b) {
     terms.push_back(static_cast<std::int32_t>((2 * order(b) + 2) / 3));
-    z[static_cast<std::size_t>(b)].bottomRows(order(b) - terms.back()).setConstant(not_a_number);
+    z[static_cast<std::size_t>(b)].bottomRows(order(b) - terms.back()).setConstant(nan);
     for (Index k = 0; k < terms.back(); ++k)
       f[static_cast<std::size_t>(batch_.segment(b).vector + k)] = 1 / static_cast<double>(k + 1);
   }

@@ -1,13 +1,13 @@
 #include "moclean/noise/gaussian_frames.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <gmock/gmock.h>
 
 #include "moclean/core/error.hpp"
 
 #include "support/matrix.hpp"
+#include "support/nan.hpp"
 #include "support/tolerance.hpp"
 
 namespace moclean {
@@ -80,7 +80,7 @@ TEST(GaussianFrames, TreatsColumnsIndependently) {
 
 TEST(GaussianFrames, DoesNotDependOnTheSamples) {
   Matrix clean = test::random_matrix(30, 9, 3);
-  clean(4, 5) = std::numeric_limits<double>::quiet_NaN();
+  clean(4, 5) = test::nan;
   Recording noisy{.samples = clean, .columns = default_column_names(9), .unit = ""};
   Random random(5);
 

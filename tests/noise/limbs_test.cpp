@@ -1,7 +1,6 @@
 #include "moclean/noise/limbs.hpp"
 
 #include <cmath>
-#include <limits>
 
 #include <gmock/gmock.h>
 
@@ -9,6 +8,7 @@
 
 #include "noise/spoil.hpp"
 #include "support/matrix.hpp"
+#include "support/nan.hpp"
 #include "support/tolerance.hpp"
 
 namespace moclean {
@@ -90,7 +90,7 @@ TEST(LimbSwap, CountsSharesByPairsOfLimbs) {
 
 TEST(LimbSwap, LeavesAnEntryThatLacksItsLike) {
   Recording clip = clip_of({"lknee", "rknee"}, 4);
-  clip.samples(1, 0) = std::numeric_limits<double>::quiet_NaN();
+  clip.samples(1, 0) = test::nan;
   const Matrix clean = clip.samples;
 
   const Mask touched = spoil(LimbSwap{.runs = {.count = 1, .length = 4}}, clip);

@@ -1,12 +1,11 @@
 #include "moclean/noise/noise.hpp"
 
-#include <limits>
-
 #include <gmock/gmock.h>
 
 #include "moclean/core/error.hpp"
 
 #include "support/matrix.hpp"
+#include "support/nan.hpp"
 #include "support/synthetic_walk.hpp"
 
 namespace moclean {
@@ -145,7 +144,7 @@ TEST(Corrupt, MarksExactlyTheEntriesThatDiffer) {
 
 TEST(Corrupt, LeavesNaNAloneAndUntouched) {
   Recording walk = test::synthetic_walk(10);
-  walk.samples.row(3).setConstant(std::numeric_limits<double>::quiet_NaN());
+  walk.samples.row(3).setConstant(test::nan);
 
   const Corrupted noisy = corrupt(walk, GaussianFrames{.frames = 10}, 1);
 

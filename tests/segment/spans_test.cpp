@@ -1,7 +1,6 @@
 #include "moclean/segment/spans.hpp"
 
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include <gmock/gmock.h>
@@ -9,6 +8,7 @@
 #include "moclean/core/error.hpp"
 
 #include "support/matrix.hpp"
+#include "support/nan.hpp"
 #include "support/tolerance.hpp"
 
 namespace moclean {
@@ -137,7 +137,7 @@ TEST(BlendSpans, LeavesNoStepBetweenSegmentsThatAreApart) {
 TEST(BlendSpans, KeepsNaN) {
   const Spans spans = overlapping_spans({0, 10, 20}, 4);
   Matrix take = Matrix::Ones(20, 2);
-  take(9, 1) = take(15, 0) = std::numeric_limits<double>::quiet_NaN();
+  take(9, 1) = take(15, 0) = test::nan;
 
   const Matrix blended = blend_spans(stacked(take, spans), spans);
 

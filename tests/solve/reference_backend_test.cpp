@@ -7,6 +7,7 @@
 #include "moclean/core/error.hpp"
 
 #include "support/matrix.hpp"
+#include "support/nan.hpp"
 #include "support/planted.hpp"
 
 namespace moclean {
@@ -116,8 +117,7 @@ TEST(ReferenceBackend, RefusesParametersOutOfRange) {
 }
 
 TEST(ReferenceBackend, RefusesSamplesThatAreNotFinite) {
-  for (const double bad :
-       {std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity()}) {
+  for (const double bad : {test::nan, -std::numeric_limits<double>::infinity()}) {
     SegmentBatch data = ragged_batch();
     data.segment(2)(12, 3) = bad;
 

@@ -8,6 +8,8 @@
 #include "moclean/core/error.hpp"
 #include "moclean/formats/file.hpp"
 
+#include "cli/options/backend_options.hpp"
+
 namespace moclean::cli {
 namespace {
 

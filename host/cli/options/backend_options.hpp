@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "moclean/linalg/precision.hpp"
 #include "moclean/linalg/tuning.hpp"
@@ -12,6 +13,10 @@ class App;
 }
 
 namespace moclean::cli {
+
+/// What command lines and tuning files of earlier versions call KernelForm::gpu with products of
+/// our own.
+inline constexpr std::string_view former_gpu_products = "group";
 
 /// Where and in how much memory a command computes.
 struct BackendOptions {

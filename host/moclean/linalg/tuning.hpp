@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <string>
-#include <string_view>
 
 #include "moclean/device/device.hpp"
 
@@ -19,9 +18,6 @@ KernelForm parse_kernel_form(const std::string& text);
 
 /// Whose matrix products: those of our kernels, in the form chosen, or those of CLBlast.
 enum class ProductPath { own, clblast };
-
-/// What command lines and files of earlier versions call KernelForm::gpu with products of our own.
-inline constexpr std::string_view former_gpu_products = "group";
 
 std::string to_string(ProductPath path);
 
