@@ -1,5 +1,5 @@
 // The element-wise steps of robust PCA for entries of type ENTRY, a vector or a number, with
-// scalars of type SCALAR; in the notation of host/moclean/solve/reference/robust_pca.cpp.
+// scalars of type SCALAR; in the notation of host/moclean/methods/robust_pca/reference.cpp.
 //
 // Order ae keeps one matrix between two iterations,
 //   T = mu (D - A) + Y,   from which   Y+ = clamp(T, -lambda, lambda)   and   E = (T - Y+) / mu:

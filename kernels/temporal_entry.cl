@@ -1,6 +1,6 @@
 // One step of the update of robust PCA with a second-difference penalty for entries of type ENTRY,
 // a vector or a number; what the kernels of temporal.cl and temporal_group.cl share. In the
-// notation of host/moclean/solve/temporal_robust_pca.hpp:
+// notation of host/moclean/methods/temporal_robust_pca/temporal_robust_pca.hpp:
 //
 //   T = D - S + Y/mu, Y+ = clamp(mu T, -Lambda, Lambda), E = T - Y+/mu,
 //   U+ = U + mu (L - S), and the right-hand side of the next S, which is
