@@ -3,17 +3,15 @@
 #include <functional>
 #include <stop_token>
 
-#include "moclean/linalg/eigensolver.hpp"
-#include "moclean/linalg/products.hpp"
 #include "moclean/methods/matrix_completion/matrix_completion.hpp"
+#include "moclean/solve/opencl/soft_threshold.hpp"
 #include "moclean/solve/problem.hpp"
 #include "moclean/solve/solution.hpp"
 
 namespace moclean::opencl {
 
 /// Low-rank completion of many segments at once on a device, in double; the steps are those of
-/// methods/matrix_completion/reference.cpp, in the same order. The host looks at the singular
-/// values of every iteration and asks for the vectors of those above tau only, which are few.
+/// methods/matrix_completion/reference.cpp, in the same order.
 class MatrixCompletionSolver {
  public:
   /// Throws ArgumentError for a tuning out of its range.
@@ -29,15 +27,14 @@ class MatrixCompletionSolver {
              Solution& solution, const Finished& finished, const std::stop_token& stop);
 
  private:
+  struct Memory;
   struct Run;
 
   void start(Run& run);
-  void threshold(Run& run);
   void update(Run& run, const MatrixCompletion& method, const Finished& finished);
 
   const Device& device_;
-  Products products_;
-  Eigensolver eigen_;
+  SoftThreshold threshold_;
   Program program_;
   Kernel update_;
 };

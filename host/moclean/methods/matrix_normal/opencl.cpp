@@ -12,8 +12,6 @@
 namespace moclean::opencl {
 namespace {
 
-constexpr Index stacked_matrices = 10, square_matrices = 3, vectors = 3;
-
 // A window shorter than it is wide is extended until it is square.
 Index extended_rows(Index rows, Index columns) { return std::max(rows, columns); }
 
@@ -26,24 +24,33 @@ SegmentBatch extended_shape(const SegmentBatch& data, Index first, Index last) {
 
 }  // namespace
 
+struct MatrixNormalSolver::Memory {
+  // What no launch writes stays defined: padding, and the entries of windows not active.
+  Memory(MemoryLayout& of, const ConjugateGradients& method)
+      : gradients(method.memory(of)),
+        Q(of.square(Initially::zero)),
+        Z(of.square(Initially::zero)),
+        eigenvalues(of.vector(Initially::zero)),
+        f(of.vector()),
+        terms(of.per_segment<std::int32_t>()) {}
+
+  ConjugateGradients::Memory gradients;
+  Buffer<double> Q, Z, eigenvalues, f;
+  Buffer<std::int32_t> terms;
+};
+
 // What one batch needs, on the device and beside it. What is computed per window, is by `jobs`
 // threads.
 struct MatrixNormalSolver::Run {
-  Run(const Device& device, const Problem& problem, Index first, Index last,
-      const MatrixNormal& method, int threads)
+  Run(const Device& device, const ConjugateGradients& conjugate_gradients, const Problem& problem,
+      Index first, Index last, const MatrixNormal& method, int threads)
       : jobs(threads),
         host(extended_shape(problem.data, first, last)),
         motion(host.columns(), host.first_rows()),
         batch(device, host, 0, last - first),
-        gradients(device, batch),
-        Q(device, batch.square_size()),
-        Z(device, batch.square_size()),
-        eigenvalues(device, batch.vector_size()),
-        f(device, batch.vector_size()),
-        terms(device, windows()) {
-    // What no launch writes stays defined: padding, and the entries of windows not active.
-    for (auto* buffer : {&Q, &Z, &eigenvalues}) buffer->fill_zero();
-    steps.resize(windows());
+        layout(device, batch),
+        m(layout, conjugate_gradients),
+        steps(windows()) {
     for_each_index(last - first, jobs, [&](Index b) {
       steps[static_cast<std::size_t>(b)].emplace(problem.data.segment(first + b), method,
                                                  problem.prior(first + b));
@@ -86,7 +93,7 @@ struct MatrixNormalSolver::Run {
     for (const std::int32_t b : batch.active())
       Eigen::Map<Eigen::VectorXd>(values.data() + batch.segment(b).first_row, window(b).rows()) =
           window(b).precision();
-    gradients.precisions.write(values);
+    m.gradients.precisions.write(values);
   }
 
   // Writes the diagonal of R, and what keeps the preconditioner definite.
@@ -95,8 +102,8 @@ struct MatrixNormalSolver::Run {
     std::vector<double> shares(windows(), 0);
     for (const std::int32_t b : batch.active())
       shares[static_cast<std::size_t>(b)] = least_preconditioner_weight * value_of(b).mean();
-    gradients.least.write(shares);
-    upload_vector(value_of, gradients.stiffness);
+    m.gradients.least.write(shares);
+    upload_vector(value_of, m.gradients.stiffness);
   }
 
   Eigen::Map<Eigen::VectorXd> vector_of(std::vector<double>& values, std::int32_t b) const {
@@ -120,9 +127,8 @@ struct MatrixNormalSolver::Run {
   SegmentBatch host;    // stacked matrices on their way
   SegmentBatch motion;  // S of the step before
   Batch batch;
-  ConjugateGradients::Memory gradients;
-  Buffer<double> Q, Z, eigenvalues, f;
-  Buffer<std::int32_t> terms;
+  MemoryLayout layout;
+  Memory m;
   std::vector<std::optional<MatrixNormalWindow>> steps;
 };
 
@@ -134,17 +140,11 @@ MatrixNormalSolver::MatrixNormalSolver(const Device& device, const Tuning& tunin
       gradients_(device, tuning) {}
 
 std::uint64_t MatrixNormalSolver::memory_of(Index rows, Index columns, const MatrixNormal&) const {
-  const Index pitch = padded(columns), extended = extended_rows(rows, columns);
-  const Index blocks = (extended + block_rows - 1) / block_rows;
-  const Index doubles = stacked_matrices * extended * pitch + square_matrices * columns * pitch +
-                        (vectors + 3) * pitch + extended + blocks +
-                        gradients_.scratch_of(extended, columns);
-  return static_cast<std::uint64_t>(doubles) * sizeof(double) + eigen_.memory_of(columns) +
-         sizeof(SegmentRecord) + 4 * sizeof(double) +
-         static_cast<std::uint64_t>(blocks) * sizeof(BlockRecord);
+  const Index extended = extended_rows(rows, columns);
+  return moclean::memory_of<Memory>(extended, columns, gradients_) + eigen_.memory_of(columns);
 }
 
-// A to run.gradients.product: accelerations of run.motion, grown where noise matters.
+// A to run.m.gradients.product: accelerations of run.motion, grown where noise matters.
 // Windows that need no growth are left out of it: they do not depend on others, bit for bit.
 void MatrixNormalSolver::accelerate(Run& run) {
   std::vector<double> weights(run.batch.vector_size(), 0);
@@ -155,44 +155,45 @@ void MatrixNormalSolver::accelerate(Run& run) {
       growing.push_back(b);
     }
   run.upload([&](std::int32_t b) { return run.window(b).accelerations(run.motion.segment(b)); },
-             run.gradients.product);
+             run.m.gradients.product);
   if (growing.empty()) return;
-  run.gradients.r.write(run.host.storage());
-  run.f.write(weights);
+  run.m.gradients.r.write(run.host.storage());
+  run.m.f.write(weights);
   const std::vector<std::int32_t> all(run.batch.active().begin(), run.batch.active().end());
   run.batch.select(growing);
-  products_.reconstruct(run.batch, run.Z, run.f, run.terms, run.gradients.R);
-  products_.apply(run.batch, run.gradients.r, run.gradients.R, run.gradients.product);
+  products_.reconstruct(run.batch, run.m.Z, run.m.f, run.m.terms, run.m.gradients.R);
+  products_.apply(run.batch, run.m.gradients.r, run.m.gradients.R, run.m.gradients.product);
   run.batch.select(all);
 }
 
 // What is expected of Q to it, on the host.
 void MatrixNormalSolver::add_prior(Run& run) {
   std::vector<double> Q(run.batch.square_size());
-  run.Q.read(Q);
+  run.m.Q.read(Q);
   run.for_each_active([&](std::int32_t b) { run.window(b).add_prior(run.square_of(Q, b)); });
-  run.Q.write(Q);
+  run.m.Q.write(Q);
 }
 
 // Q and R from run.motion.
 void MatrixNormalSolver::learn(Run& run) {
   accelerate(run);
-  products_.gram(run.batch, run.gradients.product, run.Q);
+  products_.gram(run.batch, run.m.gradients.product, run.m.Q);
   add_prior(run);
-  eigen_(run.batch, run.Q, run.Z, run.eigenvalues);
+  eigen_(run.batch, run.m.Q, run.m.Z, run.m.eigenvalues);
   std::vector<double> values(run.batch.vector_size());
-  run.eigenvalues.read(values);
+  run.m.eigenvalues.read(values);
   run.upload_vector(
       [&](std::int32_t b) -> Eigen::VectorXd {
         return run.window(b).inverse_spectrum(run.vector_of(values, b));
       },
-      run.f);
-  products_.reconstruct(run.batch, run.Z, run.f, run.terms, run.gradients.R);
+      run.m.f);
+  products_.reconstruct(run.batch, run.m.Z, run.m.f, run.m.terms, run.m.gradients.R);
 }
 
 // S = argmin sum W (D - S)^2 + tr(P Delta S R (Delta S)') from S on, by conjugate gradients.
 void MatrixNormalSolver::smooth(Run& run, const MatrixNormal& method, int step) {
-  gradients_(run.batch, run.gradients, products_, method.solve_iterations, method.tolerance(step));
+  gradients_(run.batch, run.m.gradients, products_, method.solve_iterations,
+             method.tolerance(step));
 }
 
 // S from the first guess, smoothed with a diagonal R.
@@ -206,23 +207,23 @@ void MatrixNormalSolver::first_smoothing(Run& run, const MatrixNormal& method) {
         diagonals[static_cast<std::size_t>(b)] = std::move(guess.stiffness);
         return guess.motion;
       },
-      run.gradients.S);
-  run.gradients.D.write(run.host.storage());
-  run.gradients.R.write(R);
+      run.m.gradients.S);
+  run.m.gradients.D.write(run.host.storage());
+  run.m.gradients.R.write(R);
   run.set_precisions();
   run.set_stiffness([&](std::int32_t b) { return diagonals[static_cast<std::size_t>(b)]; });
   run.upload(
       [&](std::int32_t b) {
         return Matrix::Ones(run.window(b).rows(), run.window(b).columns()).eval();
       },
-      run.gradients.W);
+      run.m.gradients.W);
   smooth(run, method, 0);
 }
 
 // Weights and targets from the residuals, on the host.
 void MatrixNormalSolver::weigh(Run& run) {
   std::vector<double> R(run.batch.square_size());
-  run.gradients.R.read(R);
+  run.m.gradients.R.read(R);
   std::vector<Eigen::VectorXd> diagonals(run.windows());
   run.for_each_active([&](std::int32_t b) {
     diagonals[static_cast<std::size_t>(b)] = run.diagonal_of(R, b);
@@ -231,23 +232,23 @@ void MatrixNormalSolver::weigh(Run& run) {
   run.set_stiffness([&](std::int32_t b) { return diagonals[static_cast<std::size_t>(b)]; });
   run.set_precisions();
   run.upload([&](std::int32_t b) -> const Matrix& { return run.window(b).weights(); },
-             run.gradients.W);
+             run.m.gradients.W);
   const auto changed = [&](std::int32_t b) { return run.window(b).target_changed(); };
   if (std::ranges::any_of(run.batch.active(), changed))
     run.upload([&](std::int32_t b) -> const Matrix& { return run.window(b).target(); },
-               run.gradients.D);
+               run.m.gradients.D);
 }
 
 void MatrixNormalSolver::solve(const Problem& problem, Index first, Index last,
                                const MatrixNormal& method, Solution& solution,
                                const Finished& finished, const std::stop_token& stop) {
-  Run run(device_, problem, first, last, method, jobs_);
+  Run run(device_, gradients_, problem, first, last, method, jobs_);
   if (run.batch.active_count() > 0) {
-    run.terms.write(std::vector<std::int32_t>(run.windows(),
-                                              static_cast<std::int32_t>(problem.data.columns())));
+    run.m.terms.write(std::vector<std::int32_t>(run.windows(),
+                                                static_cast<std::int32_t>(problem.data.columns())));
     first_smoothing(run, method);
-    run.gradients.iterations.fill_zero();
-    run.gradients.S.read(run.motion.storage());
+    run.m.gradients.iterations.fill_zero();
+    run.m.gradients.S.read(run.motion.storage());
   }
   const int steps = method.soft_steps + method.hard_steps;
   for (int step = 0; step < steps && run.batch.active_count() > 0; ++step) {
@@ -258,7 +259,7 @@ void MatrixNormalSolver::solve(const Problem& problem, Index first, Index last,
     learn(run);
     weigh(run);
     smooth(run, method, step);
-    run.gradients.S.read(
+    run.m.gradients.S.read(
         run.motion.storage());  // for the noise, and for the next step to learn from
     run.for_each_active(
         [&](std::int32_t b) { run.window(b).estimate_noise(run.motion.segment(b)); });
@@ -270,9 +271,9 @@ void MatrixNormalSolver::solve(const Problem& problem, Index first, Index last,
 
 void MatrixNormalSolver::finish(Run& run, Index first, Solution& solution) {
   std::vector<std::int32_t> iterations(run.windows());
-  run.gradients.iterations.read(iterations);
+  run.m.gradients.iterations.read(iterations);
   std::vector<double> Z(run.batch.square_size());
-  run.Z.read(Z);
+  run.m.Z.read(Z);
   for_each_index(run.batch.segments(), jobs_, [&](Index i) {
     const Index b = first + i;
     const auto place = static_cast<std::int32_t>(i);

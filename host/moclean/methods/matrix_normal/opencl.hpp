@@ -32,6 +32,7 @@ class MatrixNormalSolver {
              Solution& solution, const Finished& finished, const std::stop_token& stop);
 
  private:
+  struct Memory;
   struct Run;
 
   void first_smoothing(Run& run, const MatrixNormal& method);

@@ -17,36 +17,31 @@ Defines tile_defines(const Device& device, const Tuning& tuning) {
   return defines;
 }
 
-std::size_t partial_sums(const Device& device, const Batch& batch) {
-  return static_cast<std::size_t>(batch.segments() * (batch.pitch() / vector_width(device)));
-}
-
 }  // namespace
 
-ConjugateGradientsMemory::ConjugateGradientsMemory(const Device& device, const Batch& batch)
-    : D(device, batch.stacked_size()),
-      W(device, batch.stacked_size()),
-      S(device, batch.stacked_size()),
-      r(device, batch.stacked_size()),
-      z(device, batch.stacked_size()),
-      p(device, batch.stacked_size()),
-      p_before(device, batch.stacked_size()),
-      product(device, batch.stacked_size()),
-      inverse_pivot(device, batch.stacked_size()),
-      first_band(device, batch.stacked_size()),
-      R(device, batch.square_size()),
-      precisions(device, batch.stacked_size() / static_cast<std::size_t>(batch.pitch())),
-      stiffness(device, batch.vector_size()),
-      least(device, static_cast<std::size_t>(batch.segments())),
-      rz(device, partial_sums(device, batch)),
-      rz_before(device, partial_sums(device, batch)),
-      bz(device, partial_sums(device, batch)),
-      partial_pq(device, batch.block_count()),
-      iterations(device, static_cast<std::size_t>(batch.segments())) {
-  // What no launch writes stays defined: padding, and the entries of segments not active.
-  for (auto* buffer : {&W, &S, &r, &z, &p, &p_before, &product, &R}) buffer->fill_zero();
-  iterations.fill_zero();
-}
+// What no launch writes stays defined: padding, and the entries of segments not active.
+ConjugateGradientsMemory::ConjugateGradientsMemory(MemoryLayout& of, KernelForm form,
+                                                   int vector_width)
+    : D(of.stacked()),
+      W(of.stacked(Initially::zero)),
+      S(of.stacked(Initially::zero)),
+      r(of.stacked(Initially::zero)),
+      z(of.stacked(Initially::zero)),
+      p(of.stacked(Initially::zero)),
+      p_before(of.stacked(Initially::zero)),
+      product(of.stacked(Initially::zero)),
+      inverse_pivot(of.stacked()),
+      first_band(of.stacked()),
+      R(of.square(Initially::zero)),
+      precisions(of.per_row()),
+      stiffness(of.vector()),
+      least(of.per_segment()),
+      rz(of.per_vector_of_columns(vector_width)),
+      rz_before(of.per_vector_of_columns(vector_width)),
+      bz(of.per_vector_of_columns(vector_width)),
+      partial_pq(of.per_block()),
+      curvatures(form == KernelForm::gpu ? of.stacked() : of.chunks(chunk_rows)),
+      iterations(of.per_segment<std::int32_t>(Initially::zero)) {}
 
 ConjugateGradients::InTiles::InTiles(const Device& device, const Tuning& tuning)
     : program(device, kernel_source::search_direction, tile_defines(device, tuning)),
@@ -73,9 +68,8 @@ ConjugateGradients::ConjugateGradients(const Device& device, const Tuning& tunin
     tiles_.emplace(device, tuning);
 }
 
-Index ConjugateGradients::scratch_of(Index rows, Index columns) const {
-  const Index blocks = (rows + block_rows - 1) / block_rows;
-  return (groups_ ? rows : blocks * chunk_rows) * padded(columns);
+ConjugateGradients::Memory ConjugateGradients::memory(MemoryLayout& of) const {
+  return {of, groups_ ? KernelForm::gpu : KernelForm::cpu, vector_width(device_)};
 }
 
 void ConjugateGradients::operator()(const Batch& batch, Memory& m, Products& products,
@@ -104,23 +98,20 @@ void ConjugateGradients::operator()(const Batch& batch, Memory& m, Products& pro
 
 void ConjugateGradients::search_in_tiles(const Batch& batch, Memory& m, const Buffer<double>& z,
                                          double tolerance, bool begins) {
-  const auto chunk = static_cast<std::size_t>(chunk_rows * batch.pitch());
-  grow(curvatures_, device_, batch.block_count() * chunk);
   tiles_->direction(per_block(batch), batch.device_segments(), batch.device_blocks(),
                     batch.active_blocks(), m.W, m.R, m.precisions, z, m.p_before, m.rz, m.rz_before,
-                    m.bz, cl_double{tolerance}, cl_int{begins}, curvatures_, m.p, m.product,
+                    m.bz, cl_double{tolerance}, cl_int{begins}, m.curvatures, m.p, m.product,
                     m.partial_pq, m.iterations);
 }
 
 // The product is also that of segments which are left as they are; nothing reads theirs.
 void ConjugateGradients::search_in_groups(const Batch& batch, Memory& m, Products& products,
                                           const Buffer<double>& z, double tolerance, bool begins) {
-  grow(curvatures_, device_, batch.stacked_size());
   const Grid grid = group_per_block(batch, work_group_);
   groups_->differences(grid, batch.device_segments(), batch.device_blocks(), batch.active_blocks(),
                        z, m.p_before, m.precisions, m.rz, m.rz_before, m.bz, cl_double{tolerance},
-                       cl_int{begins}, m.p, curvatures_, m.iterations);
-  products.apply(batch, curvatures_, m.R, m.product);
+                       cl_int{begins}, m.p, m.curvatures, m.iterations);
+  products.apply(batch, m.curvatures, m.R, m.product);
   groups_->complete(grid, batch.device_segments(), batch.device_blocks(), batch.active_blocks(),
                     m.W, m.p, m.product, m.partial_pq);
 }

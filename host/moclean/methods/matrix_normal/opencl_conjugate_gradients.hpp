@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "moclean/linalg/memory_layout.hpp"
 #include "moclean/linalg/products.hpp"
 
 namespace moclean::opencl {
@@ -11,11 +12,13 @@ namespace moclean::opencl {
 /// are one per row of all segments, 0 of the last two of each, stiffness is the diagonal of R,
 /// least what keeps the preconditioner of a segment definite.
 struct ConjugateGradientsMemory {
-  ConjugateGradientsMemory(const Device& device, const Batch& batch);
+  /// Sums over columns are kept per `vector_width` of them.
+  ConjugateGradientsMemory(MemoryLayout& of, KernelForm form, int vector_width);
 
   Buffer<double> D, W, S, r, z, p, p_before, product, inverse_pivot, first_band;
   Buffer<double> R, precisions, stiffness, least;
   Buffer<double> rz, rz_before, bz, partial_pq;
+  Buffer<double> curvatures;  ///< Delta'P Delta p: a chunk per block, in the GPU form all of it
   Buffer<std::int32_t> iterations;  ///< of each segment, counted on
 };
 
@@ -29,8 +32,7 @@ class ConjugateGradients {
 
   ConjugateGradients(const Device& device, const Tuning& tuning);
 
-  /// Doubles of device memory that a segment of this size takes beside Memory.
-  Index scratch_of(Index rows, Index columns) const;
+  Memory memory(MemoryLayout& of) const;
 
   /// From m.S on to m.S: at most `most_iterations`, of each segment until the square of its
   /// gradient, as the preconditioner measures it, is `tolerance`^2 of that at S = 0. Work-groups
@@ -67,7 +69,6 @@ class ConjugateGradients {
   std::optional<InTiles> tiles_;
   std::optional<InGroups> groups_;
   int work_group_ = 1;
-  Buffer<double> curvatures_;  // Delta'Delta p: chunks of it in tiles, all of it in groups
 };
 
 }  // namespace moclean::opencl

@@ -6,29 +6,25 @@
 #include <cmath>
 
 #include "moclean/core/error.hpp"
+#include "moclean/linalg/memory_layout.hpp"
 #include "moclean/methods/spectral/weights.hpp"
 #include "moclean/solve/opencl/stacked_rows.hpp"
 
 namespace moclean::opencl {
 namespace {
 
-constexpr Index stacked_matrices = 3, square_matrices = 4, vectors = 2;
-
 struct Memory {
-  Memory(const Device& device, const Batch& batch)
-      : D(device, batch.stacked_size()),
-        A(device, batch.stacked_size()),
-        B(device, batch.stacked_size()),
-        G(device, batch.square_size()),
-        Z(device, batch.square_size()),
-        P(device, batch.square_size()),
-        W(device, batch.square_size()),
-        eigenvalues(device, batch.vector_size()),
-        f(device, batch.vector_size()),
-        terms(device, static_cast<std::size_t>(batch.segments())) {
-    // What no launch writes stays defined: the padding.
-    for (auto* buffer : {&A, &B, &G, &Z, &P, &W, &eigenvalues}) buffer->fill_zero();
-  }
+  explicit Memory(MemoryLayout& of)
+      : D(of.stacked()),
+        A(of.stacked(Initially::zero)),
+        B(of.stacked(Initially::zero)),
+        G(of.square(Initially::zero)),
+        Z(of.square(Initially::zero)),
+        P(of.square(Initially::zero)),
+        W(of.square(Initially::zero)),
+        eigenvalues(of.vector(Initially::zero)),
+        f(of.vector()),
+        terms(of.per_segment<std::int32_t>()) {}
 
   Buffer<double> D, A, B, G, Z, P, W, eigenvalues, f;
   Buffer<std::int32_t> terms;
@@ -50,11 +46,7 @@ SpectralSolver::SpectralSolver(const Device& device, const Tuning& tuning)
       eigen_(device, tuning) {}
 
 std::uint64_t SpectralSolver::bytes_of(Index rows, Index columns) const {
-  const Index order = std::min(rows, columns);
-  const Index doubles = stacked_matrices * rows * padded(columns) +
-                        square_matrices * order * padded(order) + vectors * padded(order);
-  return static_cast<std::uint64_t>(doubles) * sizeof(double) + eigen_.memory_of(order) +
-         sizeof(SegmentRecord) + sizeof(std::int32_t);
+  return moclean::memory_of<Memory>(rows, columns) + eigen_.memory_of(std::min(rows, columns));
 }
 
 template <class Chosen>
@@ -63,7 +55,8 @@ void SpectralSolver::weigh(const SegmentBatch& data, Index first, Index last, co
                            const std::stop_token& stop) {
   if (stop.stop_requested()) throw Cancelled();
   Batch batch(device_, data, first, last);
-  Memory m(device_, batch);
+  MemoryLayout layout(device_, batch);
+  Memory m(layout);
   m.D.write(stacked_rows(data, first, last));
   products_.gram(batch, m.D, m.G);
   eigen_(batch, m.G, m.Z, m.eigenvalues);

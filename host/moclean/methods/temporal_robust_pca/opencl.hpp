@@ -6,9 +6,8 @@
 #include <string_view>
 
 #include "moclean/linalg/banded.hpp"
-#include "moclean/linalg/eigensolver.hpp"
-#include "moclean/linalg/products.hpp"
 #include "moclean/methods/temporal_robust_pca/temporal_robust_pca.hpp"
+#include "moclean/solve/opencl/soft_threshold.hpp"
 #include "moclean/solve/problem.hpp"
 #include "moclean/solve/solution.hpp"
 
@@ -34,6 +33,7 @@ class TemporalRobustPcaSolver {
              Solution& solution, const Finished& finished, const std::stop_token& stop);
 
  private:
+  struct Memory;
   struct Run;
 
   struct Programs {
@@ -53,12 +53,11 @@ class TemporalRobustPcaSolver {
   void update_smooth(Run& run);
   void update_low_rank(Run& run, const TemporalRobustPca& method);
   void update_sparse(Run& run, const TemporalRobustPca& method);
-  Index retire(Run& run, const TemporalRobustPca& method);
+  Index end_iteration(Run& run, const TemporalRobustPca& method);
 
   const Device& device_;
   int jobs_;
-  Products products_;
-  Eigensolver eigen_;
+  SoftThreshold threshold_;
   Banded<double> banded_;
   int work_group_ = 1;
   std::optional<Programs> in_vectors_;
