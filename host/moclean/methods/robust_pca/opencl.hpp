@@ -78,7 +78,7 @@ class RobustPcaSolver {
 
   const Device& device_;
   int sweep_rows_;
-  Products products_;
+  Products<double> products_;
   Eigensolver eigen_;
   Norms<Real> norms_;
   EntrySteps<Real> entries_;
