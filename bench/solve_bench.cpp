@@ -7,8 +7,8 @@
 
 #include <benchmark/benchmark.h>
 
+#include "moclean/backend/opencl_backend.hpp"
 #include "moclean/noise/motion_like.hpp"
-#include "moclean/solve/opencl/opencl_backend.hpp"
 
 #include "support/verify.hpp"
 

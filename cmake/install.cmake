@@ -8,7 +8,7 @@ install(TARGETS moclean EXPORT moclean-targets ARCHIVE DESTINATION ${CMAKE_INSTA
 # Every header but those only sources of their own folder include: the steps behind a backend, the
 # tools behind the readers, the text of the kernels.
 set(internal_headers
-    "solve/(reference|opencl)/(robust_pca|robust_pca_memory|robust_pca_work|svd|spectral|matrix_completion|stacked_rows|transfer|entry_steps)"
+    "methods/[a-z_]+/(reference|opencl)[a-z_]*" "solve/(reference_svd|opencl/(stacked_rows|transfer))"
     "formats/(text_scanner|plain_number|row_collector|frame_rate|extension)" "filter/observed"
     "metric/same_shape" "experiment/toml_section" "device/kernel_source" "report/(assets|figures|quantised)"
     "run/(batch_rules|busy_clock|byte_size|memory_budget|result_writer|run_log|take_batch|take_page|take_reader|work_queue)")

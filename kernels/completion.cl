@@ -1,4 +1,5 @@
-// One step of low-rank completion, in the notation of host/moclean/solve/matrix_completion.hpp:
+// One step of low-rank completion, in the notation of
+// host/moclean/methods/matrix_completion/matrix_completion.hpp:
 //
 //   Y = Y + delta P(D - X),   squares = |P(D - X)|_F^2
 //

@@ -1,7 +1,7 @@
 // Preconditioned conjugate gradients for W o S + Delta'P Delta S R = W o D, Delta the second
 // difference over the rows of a segment, P a diagonal of their precisions, R symmetric positive
 // definite [columns x columns]; one system per segment, in the notation of
-// host/moclean/solve/reference/matrix_normal.cpp:
+// host/moclean/methods/matrix_normal/reference.cpp:
 //
 //   factor      M = diag(W_j + least) + R_jj Delta'P Delta = L diag(pivot) L' per column j
 //   direction   p = z + beta p,  q = W o p + Delta'P Delta p R,  p.q per block: search_direction.cl

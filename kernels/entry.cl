@@ -1,5 +1,5 @@
 // The element-wise steps of robust PCA for entries of type ENTRY, a vector or a number, with
-// scalars of type SCALAR; in the notation of host/moclean/solve/reference/robust_pca.cpp. What
+// scalars of type SCALAR; in the notation of host/moclean/methods/robust_pca/reference.cpp. What
 // sweep.cl, sweep_group.cl and grams.cl share.
 //
 // Order ae keeps one matrix between two iterations,

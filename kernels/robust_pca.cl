@@ -1,5 +1,5 @@
 // The scalar steps of robust PCA by inexact augmented Lagrange multipliers, in the notation of
-// host/moclean/solve/reference/robust_pca.cpp:
+// host/moclean/methods/robust_pca/reference.cpp:
 //
 //   start      mu = mu0_factor / |D|_2, Y = D / max(|D|_2, |D|_max / lambda)
 //   threshold  f_k = max(1 - (1/mu) / sigma_k, 0), rank = number of f_k > 0

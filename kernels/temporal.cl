@@ -1,5 +1,5 @@
 // The element-wise steps of robust PCA with a second-difference penalty, in the notation of
-// host/moclean/solve/temporal_robust_pca.hpp:
+// host/moclean/methods/temporal_robust_pca/temporal_robust_pca.hpp:
 //
 //   shift    X = S - U/mu
 //   update   E, Y+, U+ and the right-hand side of the next S

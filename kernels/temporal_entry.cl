@@ -1,6 +1,6 @@
 // The element-wise steps of robust PCA with a second-difference penalty for entries of type ENTRY,
 // a vector or a number; what the kernels of temporal.cl and temporal_group.cl share. In the
-// notation of host/moclean/solve/temporal_robust_pca.hpp:
+// notation of host/moclean/methods/temporal_robust_pca/temporal_robust_pca.hpp:
 //
 //   X = S - U/mu, and after the next L
 //   T = D - S + Y/mu, Y+ = clamp(mu T, -Lambda, Lambda), E = T - Y+/mu,

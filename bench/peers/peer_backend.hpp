@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "moclean/solve/backend.hpp"
+#include "moclean/backend/backend.hpp"
 
 #include "peers/segment_solver.hpp"
 

@@ -10,8 +10,8 @@
 
 namespace moclean::peers {
 
-/// The iteration of solve/reference/robust_pca.cpp with eigenvectors of the Gram matrix in place of
-/// the SVD, on packed matrices D, A, X, Y [m x n] with m >= n. A segment with fewer rows than
+/// The iteration of methods/robust_pca/reference.cpp with eigenvectors of the Gram matrix in place
+/// of the SVD, on packed matrices D, A, X, Y [m x n] with m >= n. A segment with fewer rows than
 /// columns is solved transposed: the same problem.
 ///
 /// Algebra is what the peers differ in. Its matrices are packed and row-major, [m x n]:

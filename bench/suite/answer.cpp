@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "moclean/backend/reference_backend.hpp"
 #include "moclean/core/error.hpp"
-#include "moclean/solve/reference/reference_backend.hpp"
 
 namespace moclean::bench {
 namespace {

@@ -1,6 +1,6 @@
 #include "suite/contestant.hpp"
 
-#include "moclean/solve/opencl/opencl_backend.hpp"
+#include "moclean/backend/opencl_backend.hpp"
 
 #include "peers/peer_backend.hpp"
 

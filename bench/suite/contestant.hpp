@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "moclean/backend/backend.hpp"
 #include "moclean/device/device.hpp"
-#include "moclean/solve/backend.hpp"
 
 namespace moclean::bench {
 

@@ -1,5 +1,5 @@
 // Time and work of every kernel while the first take is solved.
-#include "moclean/solve/opencl/opencl_backend.hpp"
+#include "moclean/backend/opencl_backend.hpp"
 
 #include "suite/sections.hpp"
 #include "suite/takes.hpp"

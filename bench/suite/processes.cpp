@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 #include <sys/resource.h>
 
+#include "moclean/backend/opencl_backend.hpp"
 #include "moclean/core/error.hpp"
 #include "moclean/noise/motion_like.hpp"
-#include "moclean/solve/opencl/opencl_backend.hpp"
 
 #include "suite/contestant.hpp"
 #include "suite/sections.hpp"

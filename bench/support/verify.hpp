@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "moclean/solve/reference/reference_backend.hpp"
+#include "moclean/backend/reference_backend.hpp"
 
 namespace moclean::bench {
 

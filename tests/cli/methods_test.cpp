@@ -4,10 +4,10 @@
 
 #include <gmock/gmock.h>
 
+#include "moclean/backend/reference_backend.hpp"
 #include "moclean/denoise/chain.hpp"
 #include "moclean/formats/read_write.hpp"
 #include "moclean/noise/noise.hpp"
-#include "moclean/solve/reference/reference_backend.hpp"
 
 #include "cli/program.hpp"
 #include "support/matrix.hpp"

@@ -4,12 +4,12 @@
 
 #include <gmock/gmock.h>
 
+#include "moclean/backend/reference_backend.hpp"
 #include "moclean/core/error.hpp"
 #include "moclean/denoise/low_rank.hpp"
 #include "moclean/metric/metric.hpp"
 #include "moclean/noise/noise.hpp"
 #include "moclean/segment/automatic.hpp"
-#include "moclean/solve/reference/reference_backend.hpp"
 
 #include "support/matrix.hpp"
 

@@ -2,9 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include "moclean/backend/reference_backend.hpp"
 #include "moclean/core/random.hpp"
 #include "moclean/denoise/automatic.hpp"
-#include "moclean/solve/reference/reference_backend.hpp"
 
 #include "support/hand.hpp"
 

@@ -5,10 +5,10 @@
 
 #include <gmock/gmock.h>
 
+#include "moclean/backend/reference_backend.hpp"
 #include "moclean/core/error.hpp"
 #include "moclean/core/random.hpp"
 #include "moclean/filter/filter.hpp"
-#include "moclean/solve/reference/reference_backend.hpp"
 
 #include "support/correlated_noise.hpp"
 #include "support/limbs.hpp"

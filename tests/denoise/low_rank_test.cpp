@@ -2,10 +2,10 @@
 
 #include <gmock/gmock.h>
 
+#include "moclean/backend/reference_backend.hpp"
 #include "moclean/core/error.hpp"
 #include "moclean/metric/metric.hpp"
 #include "moclean/noise/noise.hpp"
-#include "moclean/solve/reference/reference_backend.hpp"
 
 #include "support/matrix.hpp"
 #include "support/nan.hpp"

@@ -5,9 +5,9 @@
 
 #include <gmock/gmock.h>
 
+#include "moclean/backend/reference_backend.hpp"
 #include "moclean/denoise/low_rank.hpp"
 #include "moclean/noise/noise.hpp"
-#include "moclean/solve/reference/reference_backend.hpp"
 
 #include "support/matrix.hpp"
 #include "support/synthetic_walk.hpp"

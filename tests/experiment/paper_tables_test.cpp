@@ -2,9 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include "moclean/backend/reference_backend.hpp"
 #include "moclean/experiment/run_cells.hpp"
 #include "moclean/experiment/summary.hpp"
-#include "moclean/solve/reference/reference_backend.hpp"
 
 #include "experiment/small_experiment.hpp"
 

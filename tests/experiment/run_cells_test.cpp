@@ -4,9 +4,9 @@
 
 #include <gmock/gmock.h>
 
+#include "moclean/backend/reference_backend.hpp"
 #include "moclean/core/error.hpp"
 #include "moclean/metric/metric.hpp"
-#include "moclean/solve/reference/reference_backend.hpp"
 
 #include "experiment/small_experiment.hpp"
 #include "formats/temporary_folder.hpp"

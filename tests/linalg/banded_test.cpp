@@ -45,7 +45,8 @@ SegmentBatch solve_columns(int width, const SegmentBatch& b, const SegmentBatch&
   const Device& device = test::device();
   const Batch batch(device, b, 0, b.segments());
   Banded<double> banded(device, width);
-  ColumnBands<double> bands = banded.column_bands(batch);
+  MemoryLayout layout(test::device(), batch);
+  ColumnBands<double> bands = banded.column_bands(layout);
   Buffer<double> x(device, b.storage());  // solved in place
   const Buffer<double> w(device, weights.storage()), penalties(device, std::span(q));
 
@@ -63,7 +64,8 @@ SegmentBatch solve_shared(int width, const SegmentBatch& b, const std::vector<do
   const Device& device = test::device();
   const Batch batch(device, b, 0, b.segments());
   Banded<double> banded(device, width);
-  SharedBands<double> bands = banded.shared_bands(batch);
+  MemoryLayout layout(test::device(), batch);
+  SharedBands<double> bands = banded.shared_bands(layout);
   const Buffer<double> right(device, b.storage()), weights(device, std::span(c)),
       penalties(device, std::span(q));
   Buffer<double> x(device, b.storage().size());
@@ -230,7 +232,8 @@ TEST(Banded, WorksInSinglePrecision) {
   const std::vector<float> one = {1}, four = {4};
   const Buffer<float> c(device, std::span(one)), q(device, std::span(four));
   Banded<float> banded(device, 2);
-  SharedBands<float> bands = banded.shared_bands(batch);
+  MemoryLayout layout(test::device(), batch);
+  SharedBands<float> bands = banded.shared_bands(layout);
 
   banded.factor(batch, c, q, bands);
   banded.solve(batch, bands, x, x);

@@ -10,10 +10,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "moclean/backend/reference_backend.hpp"
 #include "moclean/core/error.hpp"
 #include "moclean/formats/read_write.hpp"
 #include "moclean/run/engine.hpp"
-#include "moclean/solve/reference/reference_backend.hpp"
 
 #include "support/synthetic_walk.hpp"
 #include "support/temporary_folder.hpp"

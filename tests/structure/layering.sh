@@ -5,7 +5,8 @@ set -euo pipefail
 cd "$1"
 
 # What a folder may include besides itself. The longest matching folder is a file's home, and an
-# include's too. `*` is everything.
+# include's too. `*` is everything. Of the folder of a method, methods/X, the files reference* and
+# opencl* are rooms of their own, moclean/methods/reference and .../opencl, whatever the method.
 declare -A may_include=(
   [moclean/core]=''
   [moclean/motion]='moclean/core'
@@ -18,12 +19,15 @@ declare -A may_include=(
   [moclean/device]='moclean/core'
   [moclean/linalg]='moclean/core moclean/device'
   [moclean/solve]='moclean/core'
-  [moclean/solve/reference]='moclean/core moclean/solve'
   [moclean/solve/opencl]='moclean/core moclean/device moclean/linalg moclean/solve'
-  [moclean/denoise]='moclean/core moclean/motion moclean/body moclean/segment moclean/filter moclean/solve'
-  [moclean/experiment]='moclean/core moclean/motion moclean/formats moclean/noise moclean/metric moclean/denoise moclean/solve'
+  [moclean/methods]='moclean/core moclean/solve'
+  [moclean/methods/reference]='moclean/core moclean/solve moclean/methods'
+  [moclean/methods/opencl]='moclean/core moclean/device moclean/linalg moclean/solve moclean/solve/opencl moclean/methods'
+  [moclean/backend]='moclean/core moclean/device moclean/linalg moclean/solve moclean/solve/opencl moclean/methods moclean/methods/reference moclean/methods/opencl'
+  [moclean/denoise]='moclean/core moclean/motion moclean/body moclean/segment moclean/filter moclean/solve moclean/methods moclean/backend'
+  [moclean/experiment]='moclean/core moclean/motion moclean/formats moclean/noise moclean/metric moclean/denoise moclean/backend'
   [moclean/report]='moclean/core moclean/motion moclean/metric moclean/denoise'
-  [moclean/run]='moclean/core moclean/motion moclean/formats moclean/segment moclean/filter moclean/linalg moclean/solve moclean/solve/reference moclean/metric moclean/denoise moclean/report'
+  [moclean/run]='moclean/core moclean/motion moclean/formats moclean/segment moclean/filter moclean/linalg moclean/solve moclean/backend moclean/metric moclean/denoise moclean/report'
   [cli]='*'
   [python]='*'
 )
@@ -59,6 +63,7 @@ problem() { echo "$1"; problems=$((problems + 1)); }
 # Sets `home` to the longest folder of the table that holds the path.
 home_of() {
   home=${1%/*}
+  [[ $1 =~ ^(moclean/methods)/[^/]+/(reference|opencl) ]] && home=${BASH_REMATCH[1]}/${BASH_REMATCH[2]}
   while [[ ! -v may_include[$home] && $home == */* ]]; do home=${home%/*}; done
   [[ -v may_include[$home] ]]
 }
@@ -73,6 +78,9 @@ check_include() {  # FILE LINE INCLUDED
     return 0
   fi
   to=$home
+  if [[ $from == moclean/methods* && $to == moclean/methods* && ${1%/*} != "${3%/*}" ]]; then
+    problem "host/$1:$2: includes $3, of another method"
+  fi
   [[ $from == "$to" || " ${may_include[$from]} " == *" $to "* ]] ||
     problem "host/$1:$2: includes $3, but $from may only include: ${may_include[$from]:-itself}"
 }

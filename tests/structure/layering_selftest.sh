@@ -37,8 +37,11 @@ accepts() {
 refuses moclean/core/planted.hpp '#include "moclean/motion/recording.hpp"' 'may only include: itself'
 refuses moclean/motion/planted.cpp '  #  include "moclean/formats/read_write.hpp"' 'may only include: moclean/core'
 refuses moclean/solve/planted.hpp '#include "moclean/motion/recording.hpp"' 'may only include'
-refuses moclean/solve/reference/planted.cpp '#include "moclean/device/device.hpp"' 'may only include'
-refuses moclean/solve/reference/planted.cpp '#include "moclean/solve/opencl/x.hpp"' 'may only include'
+refuses moclean/methods/robust_pca/planted.hpp '#include "moclean/linalg/batch.hpp"' 'may only include'
+refuses moclean/methods/robust_pca/reference_planted.cpp '#include "moclean/device/device.hpp"' 'may only include'
+refuses moclean/methods/robust_pca/reference_planted.cpp '#include "moclean/methods/robust_pca/opencl.hpp"' 'may only include'
+refuses moclean/methods/robust_pca/opencl_planted.cpp '#include "moclean/backend/backend.hpp"' 'may only include'
+refuses moclean/methods/robust_pca/planted.hpp '#include "moclean/methods/spectral/weights.hpp"' 'of another method'
 refuses moclean/metric/planted.cpp '#include "moclean/elsewhere/x.hpp"' 'in no folder of the table'
 refuses moclean/elsewhere/planted.cpp 'int x;' 'in no folder of the table'
 refuses moclean/linalg/planted.cpp '#include <CL/opencl.hpp>' 'includes OpenCL'
@@ -56,6 +59,7 @@ accepts moclean/core/planted.cpp '// a comment may say std::cout, catch (...) or
 accepts moclean/formats/planted.cpp 'int n = std::snprintf(nullptr, 0, "x");'
 accepts moclean/formats/planted.cpp '#include <fstream>'
 accepts moclean/solve/opencl/planted.cpp '#include "moclean/linalg/x.hpp"'
+accepts moclean/methods/robust_pca/opencl_planted.cpp '#include "moclean/linalg/x.hpp"'
 
 ((failures == 0)) || exit 1
 echo 'layering: every planted violation is named'

@@ -3,8 +3,8 @@
 #include <memory>
 #include <string>
 
-#include "moclean/solve/opencl/opencl_backend.hpp"
-#include "moclean/solve/reference/reference_backend.hpp"
+#include "moclean/backend/opencl_backend.hpp"
+#include "moclean/backend/reference_backend.hpp"
 
 #include "support/device.hpp"
 

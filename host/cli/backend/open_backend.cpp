@@ -5,9 +5,9 @@
 
 #include <fmt/format.h>
 
+#include "moclean/backend/opencl_backend.hpp"
+#include "moclean/backend/reference_backend.hpp"
 #include "moclean/run/job.hpp"
-#include "moclean/solve/opencl/opencl_backend.hpp"
-#include "moclean/solve/reference/reference_backend.hpp"
 
 #include "cli/backend/tuning_cache.hpp"
 

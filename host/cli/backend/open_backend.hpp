@@ -2,8 +2,8 @@
 
 #include <memory>
 
+#include "moclean/backend/backend.hpp"
 #include "moclean/device/device.hpp"
-#include "moclean/solve/backend.hpp"
 
 #include "cli/options/backend_options.hpp"
 #include "cli/printing/backend_report.hpp"

@@ -8,9 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "moclean/backend/opencl_backend.hpp"
 #include "moclean/core/error.hpp"
 #include "moclean/denoise/agreement.hpp"
-#include "moclean/solve/opencl/opencl_backend.hpp"
 
 namespace moclean::cli {
 namespace {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "moclean/backend/backend.hpp"
 #include "moclean/linalg/tuning.hpp"
-#include "moclean/solve/backend.hpp"
 
 namespace moclean::cli {
 

@@ -5,10 +5,10 @@
 
 #include <CLI/CLI.hpp>
 
+#include "moclean/backend/opencl_backend.hpp"
 #include "moclean/core/error.hpp"
 #include "moclean/run/byte_size.hpp"
 #include "moclean/run/process_memory.hpp"
-#include "moclean/solve/opencl/opencl_backend.hpp"
 
 namespace moclean::cli {
 namespace {

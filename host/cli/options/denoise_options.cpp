@@ -5,9 +5,9 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "moclean/backend/opencl_backend.hpp"
 #include "moclean/core/error.hpp"
 #include "moclean/formats/formats.hpp"
-#include "moclean/solve/opencl/opencl_backend.hpp"
 
 #include "cli/options/input_options.hpp"
 

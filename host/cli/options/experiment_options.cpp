@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "moclean/solve/opencl/opencl_backend.hpp"
+#include "moclean/backend/opencl_backend.hpp"
 
 #include "cli/options/input_options.hpp"
 

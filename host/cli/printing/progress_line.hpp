@@ -3,7 +3,7 @@
 #include <chrono>
 #include <string>
 
-#include "moclean/solve/backend.hpp"
+#include "moclean/backend/backend.hpp"
 
 namespace moclean::cli {
 

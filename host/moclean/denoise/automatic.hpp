@@ -21,9 +21,10 @@ enum class Rejection { automatic, off, gentle, on };
 /// Whether samples that are not rejected are smoothed, or pass through to the last bit.
 enum class Smoothing { on, off };
 
-/// Cleaning without parameters to choose: matrix-normal smoothing (solve/matrix_normal.hpp) of
-/// overlapping windows, told by the distances between joints which samples are wrong. Works on any
-/// columns; where all come in joints of three, the body's rules apply (moclean/body):
+/// Cleaning without parameters to choose: matrix-normal smoothing
+/// (methods/matrix_normal/matrix_normal.hpp) of overlapping windows, told by the distances between
+/// joints which samples are wrong. Works on any columns; where all come in joints of three, the
+/// body's rules apply (moclean/body):
 ///   joints lost and written as zeros are missing (vanished), joints at wrong distances are
 ///   rejected before anything is fitted (rigid_flags), limbs that jump away and back are
 ///   (jump_flags), exact distances hold in gaps, and a take is cut where another motion begins

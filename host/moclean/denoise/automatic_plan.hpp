@@ -5,9 +5,9 @@
 #include <stop_token>
 #include <vector>
 
+#include "moclean/backend/backend.hpp"
 #include "moclean/motion/recording.hpp"
 #include "moclean/segment/plan.hpp"
-#include "moclean/solve/backend.hpp"
 
 namespace moclean {
 

@@ -8,8 +8,8 @@
 #include "moclean/body/jump_flags.hpp"
 #include "moclean/body/length_noise.hpp"
 #include "moclean/body/rigid_flags.hpp"
-#include "moclean/solve/matrix_normal_statistics.hpp"
-#include "moclean/solve/rounding_step.hpp"
+#include "moclean/methods/matrix_normal/rounding_step.hpp"
+#include "moclean/methods/matrix_normal/statistics.hpp"
 
 namespace moclean {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "moclean/backend/backend.hpp"
 #include "moclean/motion/recording.hpp"
-#include "moclean/solve/backend.hpp"
 
 namespace moclean {
 

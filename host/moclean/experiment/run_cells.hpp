@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "moclean/backend/backend.hpp"
 #include "moclean/experiment/experiment.hpp"
 #include "moclean/experiment/results.hpp"
-#include "moclean/solve/backend.hpp"
 
 namespace moclean {
 

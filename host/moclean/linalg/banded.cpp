@@ -35,17 +35,6 @@ Banded<Real>::Banded(const Device& device, int width)
       penalise_(program_, "penalise") {}
 
 template <class Real>
-ColumnBands<Real> Banded<Real>::column_bands(const Batch& batch) const {
-  return {Buffer<Real>(*device_, static_cast<std::size_t>(width_ + 1) * batch.stacked_size())};
-}
-
-template <class Real>
-SharedBands<Real> Banded<Real>::shared_bands(const Batch& batch) const {
-  const std::size_t rows = batch.stacked_size() / static_cast<std::size_t>(batch.pitch());
-  return {Buffer<Real>(*device_, static_cast<std::size_t>(width_ + 1) * rows)};
-}
-
-template <class Real>
 Grid Banded<Real>::per_vector(const Batch& batch) const {
   return per_column(batch, *device_, number_type<Real>);
 }

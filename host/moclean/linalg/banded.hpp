@@ -1,6 +1,7 @@
 #pragma once
 
 #include "moclean/linalg/batch.hpp"
+#include "moclean/linalg/memory_layout.hpp"
 
 namespace moclean {
 
@@ -33,8 +34,10 @@ class Banded {
   int width() const { return width_; }
 
   /// Bands for a batch, uninitialised.
-  ColumnBands<Real> column_bands(const Batch& batch) const;
-  SharedBands<Real> shared_bands(const Batch& batch) const;
+  ColumnBands<Real> column_bands(MemoryLayout& of) const {
+    return {of.stacked<Real>(Initially::undefined, width_ + 1)};
+  }
+  SharedBands<Real> shared_bands(MemoryLayout& of) const { return {of.per_row<Real>(width_ + 1)}; }
 
   /// A_j = diag(W_j) + q_j Delta'Delta for every column j: `weights` W is a stacked matrix with
   /// entries >= 0, `penalties` q >= 0 is [segments x pitch], 0 in the padding.

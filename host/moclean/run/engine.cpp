@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "moclean/backend/reference_backend.hpp"
 #include "moclean/core/error.hpp"
 #include "moclean/core/parallel.hpp"
 #include "moclean/denoise/sample_status.hpp"
@@ -16,7 +17,6 @@
 #include "moclean/run/take_page.hpp"
 #include "moclean/run/take_reader.hpp"
 #include "moclean/run/truth.hpp"
-#include "moclean/solve/reference/reference_backend.hpp"
 
 namespace moclean {
 namespace {

@@ -2,10 +2,10 @@
 
 #include <stop_token>
 
+#include "moclean/backend/backend.hpp"
 #include "moclean/run/events.hpp"
 #include "moclean/run/job.hpp"
 #include "moclean/run/run_report.hpp"
-#include "moclean/solve/backend.hpp"
 
 namespace moclean {
 

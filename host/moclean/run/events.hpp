@@ -5,7 +5,7 @@
 #include <string>
 #include <variant>
 
-#include "moclean/solve/backend.hpp"
+#include "moclean/backend/backend.hpp"
 
 namespace moclean {
 

@@ -5,10 +5,10 @@
 
 #include <fmt/format.h>
 
+#include "moclean/backend/backend.hpp"
 #include "moclean/core/error.hpp"
 #include "moclean/core/usable.hpp"
 #include "moclean/formats/formats.hpp"
-#include "moclean/solve/backend.hpp"
 
 namespace moclean {
 namespace {

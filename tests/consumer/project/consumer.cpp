@@ -6,10 +6,10 @@
 #include <filesystem>
 #include <fstream>
 
+#include <moclean/backend/opencl_backend.hpp>
+#include <moclean/backend/reference_backend.hpp>
 #include <moclean/formats/read_write.hpp>
 #include <moclean/run/engine.hpp>
-#include <moclean/solve/opencl/opencl_backend.hpp>
-#include <moclean/solve/reference/reference_backend.hpp>
 
 namespace {
 

@@ -1,0 +1,43 @@
+#include "moclean/backend/backend.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "moclean/core/error.hpp"
+#include "moclean/core/usable.hpp"
+
+namespace moclean {
+namespace {
+
+void require_entries(const SegmentBatch& data, bool missing_accepted) {
+  for (Index b = 0; b < data.segments(); ++b) {
+    const ConstMatrixView segment = data.segment(b);
+    const auto place = first_unusable(segment, missing_accepted, largest_entry);
+    if (!place) continue;
+    const auto [i, j] = *place;
+    if (std::isfinite(segment(i, j)))
+      throw ShapeError(
+          fmt::format("segment {}: {} at row {}, column {} is too large (at most {} in magnitude)",
+                      b, segment(i, j), i, j, largest_entry));
+    throw ShapeError(
+        fmt::format("segment {}: not finite at row {}, column {}{}", b, i, j,
+                    missing_accepted ? "" : " (missing samples are not supported by this method)"));
+  }
+}
+
+}  // namespace
+
+void require_finite(const SegmentBatch& data) { require_entries(data, false); }
+
+void require_usable(const Problem& problem, const Method& method) {
+  const auto priors = static_cast<Index>(problem.priors.size());
+  if (priors > 0 && !takes_prior(method))
+    throw ArgumentError("priors are not supported by this method");
+  if (priors > 0 && priors != problem.data.segments())
+    throw ArgumentError(fmt::format("{} priors for {} segments, expected one for each", priors,
+                                    problem.data.segments()));
+  require_entries(problem.data, accepts_missing(method));
+}
+
+}  // namespace moclean

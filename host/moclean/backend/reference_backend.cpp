@@ -1,0 +1,83 @@
+#include "moclean/backend/reference_backend.hpp"
+
+#include <algorithm>
+#include <mutex>
+
+#include <fmt/format.h>
+
+#include "moclean/core/error.hpp"
+#include "moclean/core/parallel.hpp"
+#include "moclean/methods/matrix_completion/reference.hpp"
+#include "moclean/methods/matrix_normal/reference.hpp"
+#include "moclean/methods/robust_pca/reference.hpp"
+#include "moclean/methods/spectral/reference.hpp"
+#include "moclean/methods/temporal_robust_pca/reference.hpp"
+
+namespace moclean {
+namespace {
+
+template <class M>
+auto solve_segment(const Problem& problem, Index b, const M& method, const std::stop_token& stop) {
+  const auto segment = problem.data.segment(b);
+  if constexpr (requires { M::takes_prior; })
+    return reference::solve(segment, method, stop, problem.prior(b));
+  else
+    return reference::solve(segment, method, stop);
+}
+
+}  // namespace
+
+ReferenceBackend::ReferenceBackend(int jobs) : jobs_(jobs) {
+  if (jobs < 1) throw ArgumentError(fmt::format("jobs is {}, expected at least 1", jobs));
+}
+
+std::string ReferenceBackend::name() const {
+  return fmt::format("reference (Eigen {}.{}.{}, {} {})", EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION,
+                     EIGEN_MINOR_VERSION, jobs_, jobs_ == 1 ? "thread" : "threads");
+}
+
+BackendTraits ReferenceBackend::traits() const {
+  BackendTraits traits;
+  traits.full_segments = std::max(traits.least_segments, segments_per_unit * jobs_);
+  return traits;
+}
+
+Solution ReferenceBackend::solve(const Problem& problem, const Method& method,
+                                 const Monitor& monitor) {
+  std::visit([](const auto& m) { check(m); }, method);
+  require_usable(problem, method);
+  const SegmentBatch& data = problem.data;
+
+  Solution solution;
+  solution.low_rank = SegmentBatch(data.columns(), data.first_rows());
+  solution.sparse = SegmentBatch(data.columns(), data.first_rows());
+  if (tells_trust(method)) {
+    solution.trusted.emplace(data.columns(), data.first_rows());
+    solution.deviation.emplace(data.columns(), data.first_rows());
+  }
+  solution.segments.resize(static_cast<std::size_t>(data.segments()));
+  std::mutex reporting;
+  Progress progress{.finished = 0, .total = data.segments()};
+
+  for_each_index(data.segments(), jobs_, [&](Index b) {
+    std::visit(
+        [&](const auto& m) {
+          const auto segment = solve_segment(problem, b, m, monitor.stop);
+          solution.low_rank.segment(b) = segment.low_rank;
+          solution.sparse.segment(b) = segment.sparse;
+          if constexpr (requires { segment.trusted; }) {
+            solution.trusted->segment(b) = segment.trusted;
+            solution.deviation->segment(b) = segment.deviation;
+          }
+          solution.segments[static_cast<std::size_t>(b)] = segment.outcome;
+        },
+        method);
+
+    const std::lock_guard lock(reporting);
+    ++progress.finished;
+    if (monitor.report) monitor.report(progress);
+  });
+  return solution;
+}
+
+}  // namespace moclean
