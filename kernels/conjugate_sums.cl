@@ -1,11 +1,5 @@
 // What the kernels of conjugate gradients share (conjugate_gradients.cl, search_direction.cl,
-// search_direction_group.cl): the precisions of second differences, and sums over a segment.
-
-// P of the second difference that begins with row k of a segment, k may lie before the first; 0 of
-// its last two rows, which begin none.
-inline real precision_at(global const real* precisions, const segment_t s, int k) {
-  return k < 0 ? 0 : precisions[s.first_row + k];
-}
+// search_direction_group.cl): sums over a segment, and what follows from them.
 
 // Sum over the vectors of columns of a segment, in their order.
 inline double sum_of_vectors(global const double* values, int b, const segment_t s) {

@@ -58,9 +58,20 @@ kernel __attribute__((reqd_work_group_size(WG, 1, 1))) void group_accumulate(
 
 // Off-diagonal i does not matter: relative to its neighbours, or next to nothing at all. (A is
 // scaled to |A|_2 >= 1; where a product underflows the second criterion decides.)
-INLINE int negligible(real e, real d, real d_next) {
+INLINE int is_negligible(real e, real d, real d_next) {
   return e * e <= EPSILON * EPSILON * fabs(d) * fabs(d_next) || fabs(e) <= EPSILON * EPSILON;
 }
+
+typedef struct {
+  local real *d, *e;
+} tridiagonal_t;
+
+INLINE int negligible(const tridiagonal_t t, int i) {
+  return is_negligible(t.e[i], t.d[i], t.d[i + 1]);
+}
+
+#define ENTRY real
+#include "ql.cl"
 
 // What the first work-item knows of T: the eigenvalues before `first` are done, first .. last is an
 // unreduced block, except that its first off-diagonal may be negligible.
@@ -73,8 +84,7 @@ typedef struct {
 // first negligible off-diagonal past l.
 INLINE int ql_sweep(local real* d, local real* e, local real* c, local real* s, int l, int m,
                     local progress_t* progress) {
-  const real shift = (d[l + 1] - d[l]) / (2 * e[l]);
-  real g = d[m] - d[l] + e[l] / (shift + copysign(sqrt(fma(shift, shift, (real)1)), shift));
+  real g = shifted_end(d[l], d[l + 1], e[l], d[m]);
   real sine = 1, cosine = 1, p = 0, d_next = 0;
   int i = m - 1;
   for (; i >= l; --i) {
@@ -88,7 +98,7 @@ INLINE int ql_sweep(local real* d, local real* e, local real* c, local real* s, 
     p = sine * t;
     const real d_new = g + p;
     g = fma(cosine, t, -b);
-    if (i < m - 1 && negligible(e_new, d_new, d_next)) progress->last = i + 1;
+    if (i < m - 1 && is_negligible(e_new, d_new, d_next)) progress->last = i + 1;
     e[i + 1] = e_new;
     d[i + 1] = d_next = d_new;
     c[i] = cosine;
@@ -105,13 +115,9 @@ INLINE int ql_sweep(local real* d, local real* e, local real* c, local real* s, 
 // sweeps are used up.
 INLINE int2 next_sweep(local real* d, local real* e, local real* rotations,
                        local progress_t* progress, int n, int pitch) {
-  int l = progress->first, m = progress->last;
-  if (l < m && negligible(e[l], d[l], d[l + 1])) ++l;
-  while (l < n && l >= m) {  // a block of one is an eigenvalue
-    if (l == m) ++l;
-    m = l;
-    while (m < n - 1 && !negligible(e[m], d[m], d[m + 1])) ++m;
-  }
+  const tridiagonal_t t = {d, e};
+  const int2 block = next_block(t, progress->first, progress->last, n);
+  const int l = block.x, m = block.y;
   progress->first = l;
   progress->last = m;
   progress->sweeps += 1;

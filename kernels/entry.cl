@@ -1,5 +1,6 @@
 // The element-wise steps of robust PCA for entries of type ENTRY, a vector or a number, with
-// scalars of type SCALAR; in the notation of host/moclean/methods/robust_pca/reference.cpp.
+// scalars of type SCALAR; in the notation of host/moclean/methods/robust_pca/reference.cpp. What
+// sweep.cl, sweep_group.cl and grams.cl share.
 //
 // Order ae keeps one matrix between two iterations,
 //   T = mu (D - A) + Y,   from which   Y+ = clamp(T, -lambda, lambda)   and   E = (T - Y+) / mu:
@@ -36,7 +37,45 @@ INLINE ENTRY sparse_part(ENTRY d, ENTRY y, ENTRY a, SCALAR inverse_mu, SCALAR la
   return gap - limited(gap, lambda * inverse_mu);
 }
 
+// Y of the first iteration; 0 where D is missing: `seen` is 0 there, else 1.
+INLINE ENTRY first_dual(ENTRY d, ENTRY seen, SCALAR dual_scale) { return seen * d * dual_scale; }
+
+// Order ea: A before the first iteration, 0, and D where that is missing.
+INLINE ENTRY first_low_rank(ENTRY d, ENTRY seen) { return d - seen * d; }
+
 // Order ea: X = D - E + Y/mu = A + clamp(D - A + Y/mu, -lambda/mu, lambda/mu).
 INLINE ENTRY shifted_ea(ENTRY d, ENTRY y, ENTRY a, SCALAR inverse_mu, SCALAR lambda) {
   return a + limited(fma(y, (ENTRY)inverse_mu, d - a), lambda * inverse_mu);
+}
+
+// D or X, and A where D is missing: a weight of 0, so that Y stays 0; E = D - A is free there,
+// which D = A says as well.
+INLINE ENTRY observed_or(ENTRY seen, ENTRY value, ENTRY a) { return seen > 0 ? value : a; }
+
+// What an iteration keeps of an entry, and what it reports.
+typedef struct {
+  ENTRY kept;    // T, or Y+
+  ENTRY rest;    // Y+ - Y = mu (D - A - E)
+  ENTRY sparse;  // mu E; order ea: 0
+} step_t;
+
+// Order ae, where A is known.
+INLINE step_t step_ae(const scalars_t k, ENTRY d, ENTRY a, ENTRY t) {
+  const ENTRY dual = limited(t, k.lambda);
+  const ENTRY next = fma((ENTRY)k.mu, d - a, dual);
+  const ENTRY dual_next = limited(next, k.lambda);
+  const step_t step = {next, dual_next - dual, next - dual_next};
+  return step;
+}
+
+// Order ea.
+INLINE step_t step_ea(const scalars_t k, ENTRY x, ENTRY a, ENTRY y) {
+  const ENTRY dual_next = k.mu * (x - a);
+  const step_t step = {dual_next, dual_next - y, 0};
+  return step;
+}
+
+// Order ae, at the end: E, with the 1/mu of the last iteration.
+INLINE ENTRY last_sparse_part(ENTRY t, SCALAR inverse_last, SCALAR lambda) {
+  return (t - limited(t, lambda)) * inverse_last;
 }

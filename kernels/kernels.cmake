@@ -1,9 +1,8 @@
 # moclean_embed_kernels(TARGET STEM...): every kernels/STEM.cl becomes one generated .cpp of TARGET that
 # defines moclean::kernel_source::STEM (declared in host/moclean/device/kernel_source.hpp).
-set(moclean_included_kernels
-    ${PROJECT_SOURCE_DIR}/kernels/conjugate_sums.cl ${PROJECT_SOURCE_DIR}/kernels/entry.cl
-    ${PROJECT_SOURCE_DIR}/kernels/load_rows.cl ${PROJECT_SOURCE_DIR}/kernels/state.cl
-    ${PROJECT_SOURCE_DIR}/kernels/temporal_entry.cl ${PROJECT_SOURCE_DIR}/kernels/tiles.cl)
+set(moclean_included_kernels conjugate_sums entry householder load_rows norms_entry ql search_entry
+    state temporal_entry tiles)
+list(TRANSFORM moclean_included_kernels REPLACE "(.+)" "${PROJECT_SOURCE_DIR}/kernels/\\1.cl")
 function(moclean_embed_kernels target)
   foreach(kernel ${ARGN})
     set(source ${PROJECT_SOURCE_DIR}/kernels/${kernel}.cl)

@@ -5,6 +5,9 @@
 //
 // Launch: one work-item per block (block_norms), one per active segment (segment_norms).
 
+#define ENTRY vreal
+#include "norms_entry.cl"
+
 kernel void block_norms(global const segment_t* segments,  // [segments]
                         global const block_t* blocks,      // [blocks]
                         int block_count,
@@ -15,17 +18,11 @@ kernel void block_norms(global const segment_t* segments,  // [segments]
   if (item >= block_count) return;
   const block_t block = blocks[item];
   const segment_t s = segments[block.segment];
-  const int rows = block_end(block, s) - block_begin(block, s);
-  global const real* d = data + (s.first_row + block_begin(block, s)) * s.pitch;
-
-  vreal squares = 0, largest = 0;
-  for (int i = 0; i < rows * s.pitch; i += VW) {
-    const vreal v = load(d + i);
-    squares = fma(v, v, squares);
-    largest = fmax(largest, fabs(v));
-  }
-  partial_squares[s.first_block + block.block] = lane_sum(squares);
-  partial_largest[s.first_block + block.block] = lane_max(largest);
+  const entries_t entries = entries_of(block, s);
+  norms_t norms = {0, 0};
+  for (size_t i = entries.first; i < entries.last; i += VW) add_entry(&norms, load(data + i));
+  partial_squares[s.first_block + block.block] = lane_sum(norms.squares);
+  partial_largest[s.first_block + block.block] = lane_max(norms.largest);
 }
 
 kernel void segment_norms(global const segment_t* segments,  // [segments]

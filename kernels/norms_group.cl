@@ -9,6 +9,9 @@
 
 #define SUMS 256
 
+#define ENTRY real
+#include "norms_entry.cl"
+
 kernel __attribute__((reqd_work_group_size(WG, 1, 1))) void block_norms(
     global const segment_t* segments,  // [segments]
     global const block_t* blocks,      // [blocks]
@@ -20,17 +23,13 @@ kernel __attribute__((reqd_work_group_size(WG, 1, 1))) void block_norms(
   if ((int)get_group_id(0) >= block_count) return;  // uniform
   const block_t block = blocks[get_group_id(0)];
   const segment_t s = segments[block.segment];
-  const size_t first = (s.first_row + block_begin(block, s)) * s.pitch;
-  const size_t last = (s.first_row + block_end(block, s)) * s.pitch;
+  const entries_t entries = entries_of(block, s);
   const int lane = get_local_id(0);
   for (int k = lane; k < SUMS; k += WG) {
-    real sum = 0, most = 0;
-    for (size_t i = first + k; i < last; i += SUMS) {
-      sum = fma(data[i], data[i], sum);
-      most = fmax(most, fabs(data[i]));
-    }
-    squares[k] = sum;
-    largest[k] = most;
+    norms_t norms = {0, 0};
+    for (size_t i = entries.first + k; i < entries.last; i += SUMS) add_entry(&norms, data[i]);
+    squares[k] = norms.squares;
+    largest[k] = norms.largest;
   }
   for (int width = SUMS / 2; width > 0; width /= 2) {
     barrier(CLK_LOCAL_MEM_FENCE);  // what there is so far is written

@@ -115,3 +115,14 @@ inline int block_end(const block_t b, const segment_t s) {
   const block_t next = {b.segment, b.block + 1};
   return next.block == block_count_of(s) ? s.rows : block_begin(next, s);
 }
+
+// The entries first .. last - 1 of a stacked matrix that belong to a block: one run of memory.
+typedef struct {
+  size_t first, last;
+} entries_t;
+
+INLINE entries_t entries_of(const block_t b, const segment_t s) {
+  const entries_t entries = {(s.first_row + block_begin(b, s)) * s.pitch,
+                             (s.first_row + block_end(b, s)) * s.pitch};
+  return entries;
+}

@@ -10,7 +10,8 @@
 // All are result(i, j) = sum_k left(i, k) right(j, k). A tile has TILE_DOWN x TILE_ACROSS entries;
 // SLICE values of k at a time come to local memory, and a work-item adds up 4 x 4 entries: columns
 // 16 apart, so that neighbours touch neighbouring reals. Every sum runs over k in increasing order,
-// whatever WG. Launch: (WG x tiles across, tiles down, active segments).
+// whatever WG. The register tiles of products.cl have no step in common with these: they read rows
+// of vectors where they lie. Launch: (WG x tiles across, tiles down, active segments).
 
 #ifndef WG
 #error "WG is not defined: work-items of a work-group, 16, 32, .. 256"

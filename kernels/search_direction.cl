@@ -3,34 +3,22 @@
 //
 //   direction   p = z + beta p,  q = W o p + Delta'P Delta p R,  p.q per block
 //
-// Delta'P Delta p is kept for CHUNK rows at a time. Launch: one work-item per block of rows.
+// Delta'P Delta p is kept for CHUNK rows at a time; p.q is summed over vectors. An entry takes the
+// steps of search_entry.cl, as in the form for GPUs (search_direction_group.cl). Launch: one
+// work-item per block of rows.
 
+#define ENTRY vreal
+#define LOAD load
 #include "conjugate_sums.cl"
+#include "search_entry.cl"
 #include "tiles.cl"
 
 #ifndef CHUNK
 #error "CHUNK is not defined: rows from the second differences to their product with R"
 #endif
 
-// What a block works on.
-typedef struct {
-  global const real *z, *p_before, *precisions;
-  real beta;
-  size_t begin;  // of the segment
-} search_t;
-
-INLINE vreal direction_at(const search_t c, const segment_t s, int row, int column) {
-  const size_t at = c.begin + row * (size_t)s.pitch + column;
-  return c.beta == 0 ? load(c.z + at) : fma((vreal)c.beta, load(c.p_before + at), load(c.z + at));
-}
-
-// P times the second difference of three rows from k on; 0 beyond the ends.
-INLINE vreal weighted_acceleration(const search_t c, const segment_t s, int k, vreal p0, vreal p1,
-                                   vreal p2) {
-  return precision_at(c.precisions, s, k) * (p0 - 2 * p1 + p2);
-}
-
-// p for the rows [row, end) of a vector of columns, and Delta'P Delta p to `scratch`.
+// p for the rows [row, end) of a vector of columns, `p` that of the first row of the segment, and
+// Delta'P Delta p to `scratch`.
 INLINE void differences(const search_t c, const segment_t s, int row, int end, int column,
                         global real* p, global real* scratch) {
   const int last = s.rows - 1;
@@ -38,13 +26,13 @@ INLINE void differences(const search_t c, const segment_t s, int row, int end, i
   vreal near = direction_at(c, s, max(row - 1, 0), column);
   vreal p0 = direction_at(c, s, row, column);
   vreal p1 = direction_at(c, s, min(row + 1, last), column);
-  vreal a2 = weighted_acceleration(c, s, row - 2, far, near, p0);
-  vreal a1 = weighted_acceleration(c, s, row - 1, near, p0, p1);
+  vreal a2 = weighted_acceleration(c, row - 2, far, near, p0);
+  vreal a1 = weighted_acceleration(c, row - 1, near, p0, p1);
   for (int i = row; i < end; ++i) {
     const vreal p2 = direction_at(c, s, min(i + 2, last), column);
-    const vreal a0 = weighted_acceleration(c, s, i, p0, p1, p2);
-    store(p + c.begin + i * (size_t)s.pitch + column, p0);
-    store(scratch + (i - row) * (size_t)s.pitch + column, a2 - 2 * a1 + a0);
+    const vreal a0 = weighted_acceleration(c, i, p0, p1, p2);
+    store(p + i * (size_t)s.pitch + column, p0);
+    store(scratch + (i - row) * (size_t)s.pitch + column, second_difference(a2, a1, a0));
     a2 = a1;
     a1 = a0;
     p0 = p1;
@@ -84,10 +72,8 @@ INLINE vreal product_tile(const chunk_t c, int row, int column, const int width,
 #pragma unroll
     for (int v = 0; v < width; ++v)
       if (whole || row + r < c.rows) {
-        const vreal p = load(c.p + at + v * VW);
-        const vreal q = fma(load(c.weights + at + v * VW), p, tile.at[r][v]);
-        store(c.product + at + v * VW, q);
-        sum = fma(p, q, sum);
+        const size_t i = at + v * VW;
+        store(c.product + i, completed(load(c.weights + i), load(c.p + i), tile.at[r][v], &sum));
       }
   return sum;
 }
@@ -135,15 +121,16 @@ kernel void direction(global const segment_t* segments,  // [segments]
   const stage_t stage = stage_of(rz, rz_before, bz, block.segment, s, tolerance, begins);
   if (stage.enough) return;
   if (tolerance >= 0 && block.block == 0) ++iterations[block.segment];
-  const search_t c = {z, p_before, precisions, stage.beta, s.first_row * s.pitch};
+  const search_t c = search_of(s, z, p_before, precisions, stage.beta);
+  const size_t begin = s.first_row * s.pitch;
   const int end = block_end(block, s);
   global real* own = scratch + (s.first_block + block.block) * (size_t)(CHUNK * s.pitch);
   vreal sum = 0;
   for (int row = block_begin(block, s); row < end; row += CHUNK) {
     const int chunk_end = min(row + CHUNK, end);
     for (int column = 0; column < s.pitch; column += VW)
-      differences(c, s, row, chunk_end, column, p, own);
-    const size_t at = c.begin + row * (size_t)s.pitch;
+      differences(c, s, row, chunk_end, column, p + begin, own);
+    const size_t at = begin + row * (size_t)s.pitch;
     const size_t next = at + CHUNK * (size_t)s.pitch;
     const chunk_t chunk = {own,      R + s.square,    weights + at,    p + at,  product + at,
                            z + next, p_before + next, chunk_end - row, s.pitch, s.order};

@@ -8,27 +8,18 @@
 //
 // Neighbouring work-items take neighbouring entries, across the rows of a block, which are one run
 // of memory. A block has SUMS sums of p.q whatever WG, so that the result does not depend on it.
-// Launch: WG work-items per active block.
+// An entry takes the steps of search_entry.cl. Launch: WG work-items per active block.
 
+#define ENTRY real
+#define LOAD(p) (*(p))
 #include "conjugate_sums.cl"
+#include "search_entry.cl"
 
 #ifndef WG
 #error "WG is not defined: work-items of a work-group, at most SUMS"
 #endif
 
 #define SUMS 256
-
-// p of a segment, which `differences` works out wherever it needs it.
-typedef struct {
-  global const real *z, *p_before;  // at the first entry of the segment
-  global const real* precisions;    // of all segments
-  real beta;
-} search_t;
-
-INLINE real direction_at(const search_t c, const segment_t s, int row, int column) {
-  const size_t at = row * (size_t)s.pitch + column;
-  return c.beta == 0 ? c.z[at] : fma(c.beta, c.p_before[at], c.z[at]);
-}
 
 // Entry (i, column) of Delta'P Delta p, given p0 = p(i, column).
 INLINE real curvature(const search_t c, const segment_t s, int i, int column, real p0) {
@@ -37,10 +28,10 @@ INLINE real curvature(const search_t c, const segment_t s, int i, int column, re
   const real near = direction_at(c, s, max(i - 1, 0), column);
   const real p1 = direction_at(c, s, min(i + 1, last), column);
   const real p2 = direction_at(c, s, min(i + 2, last), column);
-  const real a2 = precision_at(c.precisions, s, i - 2) * (far - 2 * near + p0);
-  const real a1 = precision_at(c.precisions, s, i - 1) * (near - 2 * p0 + p1);
-  const real a0 = precision_at(c.precisions, s, i) * (p0 - 2 * p1 + p2);
-  return a2 - 2 * a1 + a0;
+  const real a2 = weighted_acceleration(c, i - 2, far, near, p0);
+  const real a1 = weighted_acceleration(c, i - 1, near, p0, p1);
+  const real a0 = weighted_acceleration(c, i, p0, p1, p2);
+  return second_difference(a2, a1, a0);
 }
 
 kernel __attribute__((reqd_work_group_size(WG, 1, 1))) void differences(
@@ -65,7 +56,7 @@ kernel __attribute__((reqd_work_group_size(WG, 1, 1))) void differences(
   if (stage.enough) return;
   if (tolerance >= 0 && block.block == 0 && get_local_id(0) == 0) ++iterations[block.segment];
   const size_t begin = s.first_row * s.pitch;
-  const search_t c = {z + begin, p_before + begin, precisions, stage.beta};
+  const search_t c = search_of(s, z, p_before, precisions, stage.beta);
   const uint pitch = s.pitch, end = block_end(block, s) * pitch;
   for (uint i = block_begin(block, s) * pitch + get_local_id(0); i < end; i += WG) {
     const int row = i / pitch, column = i - row * pitch;
@@ -87,16 +78,12 @@ kernel __attribute__((reqd_work_group_size(WG, 1, 1))) void complete(
   if ((int)get_group_id(0) >= block_count) return;  // uniform
   const block_t block = blocks[get_group_id(0)];
   const segment_t s = segments[block.segment];
-  const size_t first = (s.first_row + block_begin(block, s)) * s.pitch;
-  const size_t last = (s.first_row + block_end(block, s)) * s.pitch;
+  const entries_t entries = entries_of(block, s);
   const int lane = get_local_id(0);
   for (int k = lane; k < SUMS; k += WG) {
-    double sum = 0;
-    for (size_t i = first + k; i < last; i += SUMS) {
-      const real q = fma(weights[i], p[i], product[i]);
-      product[i] = q;
-      sum = fma(p[i], q, sum);
-    }
+    real sum = 0;
+    for (size_t i = entries.first + k; i < entries.last; i += SUMS)
+      product[i] = completed(weights[i], p[i], product[i], &sum);
     sums[k] = sum;
   }
   for (int width = SUMS / 2; width > 0; width /= 2) {

@@ -50,22 +50,19 @@ typedef struct {
 
 // T, where A is known, order ae; returns X+.
 INLINE vreal update_ae(const scalars_t k, vreal a, vreal d, global real* t, sums_t* sums) {
-  const vreal dual = limited(load(t), k.lambda);
-  const vreal next = fma((vreal)k.mu, d - a, dual);
-  const vreal dual_next = limited(next, k.lambda), rest = dual_next - dual;
-  sums->squares = fma(rest, rest, sums->squares);
-  sums->sparse = fma(next - dual_next, next - dual_next, sums->sparse);
-  store(t, next);
-  return shifted(d, next, k.inverse_mu, k.inverse_next, k.lambda);
+  const step_t step = step_ae(k, d, a, load(t));
+  sums->squares = fma(step.rest, step.rest, sums->squares);
+  sums->sparse = fma(step.sparse, step.sparse, sums->sparse);
+  store(t, step.kept);
+  return shifted(d, step.kept, k.inverse_mu, k.inverse_next, k.lambda);
 }
 
 // The same for order ea: Y.
 INLINE vreal update_ea(const scalars_t k, vreal a, vreal d, vreal x, global real* y, sums_t* sums) {
-  const vreal dual_next = k.mu * (x - a);
-  const vreal rest = dual_next - load(y);
-  sums->squares = fma(rest, rest, sums->squares);
-  store(y, dual_next);
-  return shifted_ea(d, dual_next, a, k.inverse_next, k.lambda);
+  const step_t step = step_ea(k, x, a, load(y));
+  sums->squares = fma(step.rest, step.rest, sums->squares);
+  store(y, step.kept);
+  return shifted_ea(d, step.kept, a, k.inverse_next, k.lambda);
 }
 
 // `whole` as a constant: no row of the tile lies past the end.
@@ -257,13 +254,12 @@ kernel void start(global const segment_t* segments,  // [segments]
   if (item >= block_count) return;
   const segment_t s = segments[blocks[item].segment];
   global const state_t* state = states + blocks[item].segment;
-  const size_t first = (s.first_row + block_begin(blocks[item], s)) * s.pitch;
-  const size_t last = (s.first_row + block_end(blocks[item], s)) * s.pitch;
+  const entries_t entries = entries_of(blocks[item], s);
   const real dual_scale = state->dual_scale;
-  for (size_t i = first; i < last; i += VW) {
+  for (size_t i = entries.first; i < entries.last; i += VW) {
     const vreal d = load(data + i), seen = with_missing ? load(observed + i) : (vreal)1;
-    store(t + i, seen * d * dual_scale);
-    if (state->order_ea) store(a + i, d - seen * d);
+    store(t + i, first_dual(d, seen, dual_scale));
+    if (state->order_ea) store(a + i, first_low_rank(d, seen));
   }
 }
 
@@ -308,16 +304,15 @@ kernel void shrink(global const segment_t* segments,  // [segments]
   global const state_t* state = states + blocks[item].segment;
   if (state->finished) return;
   const scalars_t k = scalars_of(state);
-  const size_t first = (s.first_row + block_begin(blocks[item], s)) * s.pitch;
-  const size_t last = (s.first_row + block_end(blocks[item], s)) * s.pitch;
+  const entries_t entries = entries_of(blocks[item], s);
   sums_t sums = {0, 0};
-  for (size_t i = first; i < last; i += VW) {
+  for (size_t i = entries.first; i < entries.last; i += VW) {
     const vreal known = load(a + i);
     vreal d = load(data + i), formed = load(x + i);
-    if (with_missing) {  // A weight of 0: Y stays 0, E = D - A is free, which D = A says as well.
+    if (with_missing) {
       const vreal seen = load(observed + i);
-      d = seen > 0 ? d : known;
-      formed = seen > 0 ? formed : known;
+      d = observed_or(seen, d, known);
+      formed = observed_or(seen, formed, known);
       store(data + i, d);
     }
     if (state->order_ea)
@@ -338,10 +333,9 @@ kernel void finish(global const segment_t* segments,  // [segments]
   if (item >= block_count) return;
   const segment_t s = segments[blocks[item].segment];
   global const state_t* state = states + blocks[item].segment;
-  const size_t first = (s.first_row + block_begin(blocks[item], s)) * s.pitch;
-  const size_t last = (s.first_row + block_end(blocks[item], s)) * s.pitch;
+  const entries_t entries = entries_of(blocks[item], s);
   const real inverse_last = state->inverse_last, lambda = state->lambda;
-  for (size_t i = first; i < last; i += VW)
-    store(t + i, state->order_ea ? load(e + i)
-                                 : (load(t + i) - limited(load(t + i), lambda)) * inverse_last);
+  for (size_t i = entries.first; i < entries.last; i += VW)
+    store(t + i,
+          state->order_ea ? load(e + i) : last_sparse_part(load(t + i), inverse_last, lambda));
 }

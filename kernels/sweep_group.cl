@@ -1,6 +1,7 @@
 // The element-wise steps of robust PCA where A = XW is a product of its own, in the notation of
 // kernels/entry.cl, a work-group of WG work-items per block of rows: the form for GPUs. Beside
-// products_group.cl it does what sweep.cl does in one go.
+// products_group.cl it does what sweep.cl does in one go, an entry by the same steps. The residual
+// is summed up in another order.
 //
 //   start      Y = dual_scale D, A = 0; where D is missing Y = 0, A = D as it was filled
 //   form       order ae: X = D - E + Y/mu from T
@@ -22,11 +23,11 @@
 #error "WG is not defined: work-items of a work-group, a power of two"
 #endif
 
-// The entries first .. last of the stacked matrices that belong to a work-group.
+// What a work-group works on.
 typedef struct {
   segment_t segment;
   global const state_t* state;
-  size_t first, last;
+  entries_t entries;
   int block;  // among all blocks of the batch
 } part_t;
 
@@ -34,8 +35,8 @@ INLINE part_t part_of(global const segment_t* segments, global const block_t* bl
                       global const state_t* states) {
   const block_t block = blocks[get_group_id(0)];
   const segment_t s = segments[block.segment];
-  const part_t part = {s, states + block.segment, (s.first_row + block_begin(block, s)) * s.pitch,
-                       (s.first_row + block_end(block, s)) * s.pitch, s.first_block + block.block};
+  const part_t part = {s, states + block.segment, entries_of(block, s),
+                       s.first_block + block.block};
   return part;
 }
 
@@ -51,10 +52,11 @@ kernel __attribute__((reqd_work_group_size(WG, 1, 1))) void start(
     global real* a) {             // A, order ea only
   if ((int)get_group_id(0) >= block_count) return;
   const part_t part = part_of(segments, blocks, states);
-  for (size_t i = part.first + get_local_id(0); i < part.last; i += WG) {
+  const real dual_scale = part.state->dual_scale;
+  for (size_t i = part.entries.first + get_local_id(0); i < part.entries.last; i += WG) {
     const real seen = with_missing ? observed[i] : 1;
-    t[i] = seen * data[i] * part.state->dual_scale;
-    if (part.state->order_ea) a[i] = data[i] - seen * data[i];
+    t[i] = first_dual(data[i], seen, dual_scale);
+    if (part.state->order_ea) a[i] = first_low_rank(data[i], seen);
   }
 }
 
@@ -73,7 +75,7 @@ kernel __attribute__((reqd_work_group_size(WG, 1, 1))) void form(
   const part_t part = part_of(segments, blocks, states);
   if (part.state->finished || (wide_only && !is_wide(part.segment))) return;
   const scalars_t k = scalars_of(part.state);
-  for (size_t i = part.first + get_local_id(0); i < part.last; i += WG)
+  for (size_t i = part.entries.first + get_local_id(0); i < part.entries.last; i += WG)
     if (part.state->order_ea) {
       e[i] = sparse_part(data[i], t[i], a[i], k.inverse_mu, k.lambda);
       x[i] = shifted_ea(data[i], t[i], a[i], k.inverse_mu, k.lambda);
@@ -102,20 +104,22 @@ kernel __attribute__((reqd_work_group_size(WG, 1, 1))) void shrink(
   if (part.state->finished) return;
   const scalars_t k = scalars_of(part.state);
   real sum = 0, any = 0;
-  for (size_t base = part.first; base < part.last; base += WG) {
+  const int order_ea = part.state->order_ea;
+  for (size_t base = part.entries.first; base < part.entries.last; base += WG) {
     const size_t i = base + lane;
-    if (i >= part.last) continue;
-    const int missing = with_missing && observed[i] == 0;
+    if (i >= part.entries.last) continue;
     const real known = a[i];
-    if (missing) data[i] = known;
-    const real wanted = missing ? known : part.state->order_ea ? x[i] : data[i];
-    const real dual = part.state->order_ea ? t[i] : limited(t[i], k.lambda);
-    const real next = fma(k.mu, wanted - known, part.state->order_ea ? 0 : dual);
-    const real dual_next = part.state->order_ea ? next : limited(next, k.lambda);
-    const real rest = (dual_next - dual) * k.inverse_mu;
+    real wanted = order_ea ? x[i] : data[i];
+    if (with_missing) {
+      wanted = observed_or(observed[i], wanted, known);
+      data[i] = observed_or(observed[i], data[i], known);
+    }
+    const step_t step =
+        order_ea ? step_ea(k, wanted, known, t[i]) : step_ae(k, wanted, known, t[i]);
+    const real rest = step.rest * k.inverse_mu;
     sum += rest * rest;
-    any += fabs(next - dual_next);
-    t[i] = next;
+    any += fabs(step.sparse);
+    t[i] = step.kept;
   }
   squares[lane] = sum;
   sparse[lane] = any;
@@ -139,6 +143,6 @@ kernel __attribute__((reqd_work_group_size(WG, 1, 1))) void finish(
   if ((int)get_group_id(0) >= block_count) return;
   const part_t part = part_of(segments, blocks, states);
   const real lambda = part.state->lambda, inverse_last = part.state->inverse_last;
-  for (size_t i = part.first + get_local_id(0); i < part.last; i += WG)
-    t[i] = part.state->order_ea ? e[i] : (t[i] - limited(t[i], lambda)) * inverse_last;
+  for (size_t i = part.entries.first + get_local_id(0); i < part.entries.last; i += WG)
+    t[i] = part.state->order_ea ? e[i] : last_sparse_part(t[i], inverse_last, lambda);
 }

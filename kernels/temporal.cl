@@ -2,8 +2,9 @@
 // host/moclean/methods/temporal_robust_pca/temporal_robust_pca.hpp:
 //
 //   shift    X = S - U/mu
-//   update   E, Y+, U+ and the right-hand side of the next S: temporal_entry.cl
+//   update   E, Y+, U+ and the right-hand side of the next S
 //
+// An entry takes the steps of temporal_entry.cl, as in the form for GPUs (temporal_group.cl).
 // Launch: one work-item per block of rows of the active segments.
 
 #define ENTRY vreal
@@ -21,11 +22,9 @@ kernel void shift(global const segment_t* segments,  // [segments]
   const int item = get_global_id(0);
   if (item >= block_count) return;
   const segment_t s = segments[blocks[item].segment];
-  const size_t first = (s.first_row + block_begin(blocks[item], s)) * s.pitch;
-  const size_t last = (s.first_row + block_end(blocks[item], s)) * s.pitch;
-  const vreal step = -1 / mus[blocks[item].segment];
-  for (size_t i = first; i < last; i += VW)
-    store(x + i, fma(load(dual + i), step, load(smooth + i)));
+  const entries_t entries = entries_of(blocks[item], s);
+  const real mu = mus[blocks[item].segment];
+  for (size_t i = entries.first; i < entries.last; i += VW) shift_entry(smooth, dual, i, mu, x);
 }
 
 kernel void update(global const segment_t* segments,  // [segments]
@@ -48,13 +47,12 @@ kernel void update(global const segment_t* segments,  // [segments]
   if (item >= block_count) return;
   const block_t block = blocks[item];
   const segment_t s = segments[block.segment];
-  const size_t first = (s.first_row + block_begin(block, s)) * s.pitch;
-  const size_t last = (s.first_row + block_end(block, s)) * s.pitch;
+  const entries_t entries = entries_of(block, s);
   const stacked_t m = {data, observed, smooth, low_rank, sparse, y, u, next};
   const weights_t k =
       weights_of(mus[block.segment], next_mus[block.segment], lambdas[block.segment]);
   vreal gap = 0, split = 0;
-  for (size_t i = first; i < last; i += VW) update_entry(m, i, k, &gap, &split);
+  for (size_t i = entries.first; i < entries.last; i += VW) update_entry(m, i, k, &gap, &split);
   partial_gaps[s.first_block + block.block] = lane_sum(gap);
   partial_splits[s.first_block + block.block] = lane_sum(split);
 }

@@ -1,12 +1,19 @@
-// One step of the update of robust PCA with a second-difference penalty for entries of type ENTRY,
+// The element-wise steps of robust PCA with a second-difference penalty for entries of type ENTRY,
 // a vector or a number; what the kernels of temporal.cl and temporal_group.cl share. In the
 // notation of host/moclean/methods/temporal_robust_pca/temporal_robust_pca.hpp:
 //
+//   X = S - U/mu, and after the next L
 //   T = D - S + Y/mu, Y+ = clamp(mu T, -Lambda, Lambda), E = T - Y+/mu,
 //   U+ = U + mu (L - S), and the right-hand side of the next S, which is
 //   mu+ (D - E) + Y+ + mu+ L + U+ = mu+ (S + (Y+ - Y)/mu + L) + Y+ + U+
 //
 // Lambda is lambda where D was observed, else 0; there E, which is free, is left out of the result.
+
+// X at `i`.
+INLINE void shift_entry(global const real* smooth, global const real* dual, size_t i, real mu,
+                        global real* x) {
+  STORE(x + i, fma(LOAD(dual + i), (ENTRY)(-1 / mu), LOAD(smooth + i)));
+}
 
 typedef struct {
   real mu, inverse, next, lambda;  // mu, 1/mu, mu+, lambda

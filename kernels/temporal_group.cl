@@ -25,10 +25,10 @@ kernel __attribute__((reqd_work_group_size(WG, 1, 1))) void shift(
   if ((int)get_group_id(0) >= block_count) return;
   const block_t block = blocks[get_group_id(0)];
   const segment_t s = segments[block.segment];
-  const size_t first = (s.first_row + block_begin(block, s)) * s.pitch;
-  const size_t last = (s.first_row + block_end(block, s)) * s.pitch;
-  const real step = -1 / mus[block.segment];
-  for (size_t i = first + get_local_id(0); i < last; i += WG) x[i] = fma(dual[i], step, smooth[i]);
+  const entries_t entries = entries_of(block, s);
+  const real mu = mus[block.segment];
+  for (size_t i = entries.first + get_local_id(0); i < entries.last; i += WG)
+    shift_entry(smooth, dual, i, mu, x);
 }
 
 kernel __attribute__((reqd_work_group_size(WG, 1, 1))) void update(
@@ -52,15 +52,15 @@ kernel __attribute__((reqd_work_group_size(WG, 1, 1))) void update(
   if ((int)get_group_id(0) >= block_count) return;  // uniform
   const block_t block = blocks[get_group_id(0)];
   const segment_t s = segments[block.segment];
-  const size_t first = (s.first_row + block_begin(block, s)) * s.pitch;
-  const size_t last = (s.first_row + block_end(block, s)) * s.pitch;
+  const entries_t entries = entries_of(block, s);
   const stacked_t m = {data, observed, smooth, low_rank, sparse, y, u, next};
   const weights_t weights =
       weights_of(mus[block.segment], next_mus[block.segment], lambdas[block.segment]);
   const int lane = get_local_id(0);
   for (int k = lane; k < SUMS; k += WG) {
     real gap = 0, split = 0;
-    for (size_t i = first + k; i < last; i += SUMS) update_entry(m, i, weights, &gap, &split);
+    for (size_t i = entries.first + k; i < entries.last; i += SUMS)
+      update_entry(m, i, weights, &gap, &split);
     gaps[k] = gap;
     splits[k] = split;
   }

@@ -10,11 +10,11 @@
 //
 // Notation: d, e diagonal and off-diagonal of T; H_k = I - u_k u_k', |u_k|^2 = 2; Q = H_0 H_1 ..;
 // vectors are rows of `pitch` reals, zero from `n` on and outside the part a step works on.
+// The steps are those of householder.cl, as in the form for GPUs (tridiagonal_group.cl).
 // Launch: one work-item per active segment.
 
-// Below this, a sum of squares has lost digits to underflow; entries of 1e-145 next to entries of 1
-// are nothing.
-#define NEGLIGIBLE_SQUARES ((real)1e-290)
+#define ENTRY vreal
+#include "householder.cl"
 
 // Rows that are updated side by side: enough to hide the latency of an addition, and no more than
 // their factors and sums have registers.
@@ -32,18 +32,13 @@ inline real scale_triangle(global real* a, int n, int pitch) {
     for (int j = whole(i); j < i; ++j) row[j] = a[j * (size_t)pitch + i];
     for (int j = whole(i); j < pitch; j += VW) most = fmax(most, fabs(load(row + j)));
   }
-  const real largest = lane_max(most);
-  if (largest == 0) return 1;
-  const int exponent = ilogb(largest);
-  // Two factors: 2^-exponent alone overflows for subnormal entries.
-  const real half_scale = ldexp((real)1, -(exponent / 2));
-  const real scale = ldexp((real)1, -(exponent - exponent / 2));
+  const scale_t scale = scale_of(lane_max(most));
   for (int i = 0; i < n; ++i)
     for (int j = whole(i); j < pitch; j += VW) {
       global real* entry = a + i * (size_t)pitch + j;
-      store(entry, load(entry) * half_scale * scale);
+      store(entry, scaled(load(entry), scale));
     }
-  return ldexp((real)1, exponent);
+  return scale.power;
 }
 
 inline void zero(global real* v, int pitch) {
@@ -56,24 +51,16 @@ inline real dot_product(global const real* a, global const real* b, int pitch) {
   return lane_sum(sum);
 }
 
-// u with H x = (.., e, 0, ..) for the entries x[k + 1 ..] of `row`; returns e. u = 0 (H = I) if the
-// entries past x[k + 1] are zero anyway.
+// u with H x = (.., e, 0, ..) for the entries x[k + 1 ..] of `row`; returns e.
 inline real reflector(global const real* row, global real* u, int k, int pitch) {
   for (int j = 0; j < whole(k + 2); j += VW) store(u + j, 0);
   for (int j = whole(k + 2); j < pitch; j += VW) store(u + j, load(row + j));
   for (int j = whole(k + 2); j < min(k + 2, pitch); ++j) u[j] = 0;
   const real first = row[k + 1];
-  const real rest = dot_product(u, u, pitch);
-  if (rest < NEGLIGIBLE_SQUARES) {
-    zero(u, pitch);
-    return first;
-  }
-  const real norm = sqrt(fma(first, first, rest));
-  const real e = first > 0 ? -norm : norm;
-  u[k + 1] = first - e;
-  const real scale = 1 / sqrt(fma(-first, e, norm * norm));  // |u|^2 = 2 (norm^2 - first e)
-  for (int j = 0; j < pitch; j += VW) store(u + j, scale * load(u + j));
-  return e;
+  const reflector_t h = reflector_of(first, dot_product(u, u, pitch));
+  u[k + 1] = first - h.e;
+  for (int j = 0; j < pitch; j += VW) store(u + j, h.scale * load(u + j));
+  return h.e;
 }
 
 // Entries of a and b by turns: shuffles that are cheap.
@@ -122,14 +109,13 @@ INLINE vreal update_rows(global real* a, global const real* v, global const real
   for (int r = 0; r < ROWS; ++r) sum[r] = 0;
 #pragma unroll
   for (int r = 0; r < count; ++r) {
-    vi[r] = -v[i + r];
-    wi[r] = -w[i + r];
+    vi[r] = v[i + r];
+    wi[r] = w[i + r];
     ui[r] = u[i + r];
     global real* entry = row + r * pitch + diagonal;
-    const vreal updated =
-        fma(wi[r], load(v + diagonal), fma(vi[r], load(w + diagonal), load(entry)));
-    store(entry, updated);
-    block = fma(ui[r], updated, block);
+    const vreal next = updated(load(entry), vi[r], wi[r], load(v + diagonal), load(w + diagonal));
+    store(entry, next);
+    block = fma(ui[r], next, block);
   }
   for (int j = diagonal + VW; j < pitch; j += VW) {
     const vreal vj = load(v + j), wj = load(w + j), uj = load(u + j);
@@ -137,10 +123,10 @@ INLINE vreal update_rows(global real* a, global const real* v, global const real
 #pragma unroll
     for (int r = 0; r < count; ++r) {
       global real* entry = row + r * pitch + j;
-      const vreal updated = fma(wi[r], vj, fma(vi[r], wj, load(entry)));
-      store(entry, updated);
-      sum[r] = fma(updated, uj, sum[r]);
-      column = fma(ui[r], updated, column);
+      const vreal next = updated(load(entry), vi[r], wi[r], vj, wj);
+      store(entry, next);
+      sum[r] = fma(next, uj, sum[r]);
+      column = fma(ui[r], next, column);
     }
     store(p + j, column);
   }
@@ -170,7 +156,7 @@ inline real reduce_row(global real* a, global real* u, global real* v, global re
   const real half_product = (real)0.5 * dot_product(p, u, pitch);
   for (int j = 0; j < pitch; j += VW) {
     store(v + j, load(u + j));
-    store(w + j, load(p + j) - half_product * load(u + j));
+    store(w + j, update_vector(load(p + j), load(u + j), half_product));
   }
   return e;
 }
@@ -201,7 +187,7 @@ kernel void tridiagonalise(global const segment_t* segments,  // [segments]
   for (int k = 0; k < n; ++k) {
     global real* row = matrix + k * (size_t)pitch;
     for (int j = whole(k); j < pitch; j += VW)
-      store(row + j, load(row + j) - v[k] * load(w + j) - w[k] * load(v + j));
+      store(row + j, updated(load(row + j), v[k], w[k], load(v + j), load(w + j)));
     d[s.vector + n - 1 - k] = row[k];
     if (k < n - 1)
       e[s.vector + n - 2 - k] =

@@ -7,7 +7,8 @@
 // neighbours touch neighbouring reals of a row, and every sum has one order: the result depends on
 // nothing but WG and the matrix. TRIANGLE_IN_LOCAL chooses where the upper triangle lies meanwhile:
 // packed by rows in local memory (n (n + 1) / 2 reals), or in A itself, for larger n; the results
-// agree bit for bit. Launch: WG work-items per active segment.
+// agree bit for bit. The steps are those of householder.cl, as in tridiagonal.cl.
+// Launch: WG work-items per active segment.
 //
 // Loops over columns make as many turns in every work-item, although some turns find nothing to do,
 // and a scalar of the matrix is written by every work-item alike: PoCL 3.1 follows a branch that
@@ -26,9 +27,8 @@
 // Contraction is left to no compiler: fma stands where it is meant.
 #pragma OPENCL FP_CONTRACT OFF
 
-// Below this, a sum of squares has lost digits to underflow; entries of 1e-145 next to entries of 1
-// are nothing.
-#define NEGLIGIBLE_SQUARES ((real)1e-290)
+#define ENTRY real
+#include "householder.cl"
 
 // t[row_start(i, width) + j] is the entry (i, j), j >= i; width is n packed, the pitch otherwise.
 #if TRIANGLE_IN_LOCAL
@@ -69,15 +69,13 @@ INLINE real load_scaled(global const real* a, TRIANGLE real* t, local real* part
     const int j = base + get_local_id(0);
     for (int i = 0; i <= j && j < n; ++i) largest = fmax(largest, fabs(a[i * (size_t)pitch + j]));
   }
-  largest = group_max(largest, partial);
-  const int exponent = largest > 0 ? clamp(ilogb(largest), -1022, 1022) : 0;
-  const real inverse = ldexp((real)1, -exponent);
+  const scale_t scale = scale_of(group_max(largest, partial));
   for (int base = 0; base < n; base += WG) {
     const int j = base + get_local_id(0);
     for (int i = 0; i <= j && j < n; ++i)
-      t[row_start(i, width) + j] = inverse * a[i * (size_t)pitch + j];
+      t[row_start(i, width) + j] = scaled(a[i * (size_t)pitch + j], scale);
   }
-  return ldexp((real)1, exponent);
+  return scale.power;
 }
 
 // u = row k of the updated triangle; returns the sum of squares of its entries past k + 1.
@@ -87,7 +85,7 @@ INLINE real update_row(TRIANGLE const real* row, local const real* v, local cons
   for (int base = k; base < n; base += WG) {
     const int j = base + get_local_id(0);
     if (j >= n) continue;
-    const real entry = fma(-w[k], v[j], fma(-v[k], w[j], row[j]));
+    const real entry = updated(row[j], v[k], w[k], v[j], w[j]);
     if (j > k + 1) rest = fma(entry, entry, rest);
     u[j] = entry;
   }
@@ -95,22 +93,17 @@ INLINE real update_row(TRIANGLE const real* row, local const real* v, local cons
 }
 
 // u = x scaled so that H x = (e, 0, ..) for the entries k + 1 .. of x, which u holds; returns e.
-// rest: sum of the squares of all but the first. u = 0 (H = I) if they are nothing.
+// rest: sum of the squares of all but the first.
 INLINE real reflector(local real* u, real rest, int k, int n) {
   const real first = u[k + 1];
-  real e = first, scale = 0;
-  if (rest >= NEGLIGIBLE_SQUARES) {
-    const real norm = sqrt(fma(first, first, rest));
-    e = first > 0 ? -norm : norm;
-    scale = 1 / sqrt(fma(-first, e, norm * norm));  // |u|^2 = 2 (norm^2 - first e)
-  }
+  const reflector_t h = reflector_of(first, rest);
   barrier(CLK_LOCAL_MEM_FENCE);  // u[k + 1] has been read
   for (int base = k + 1; base < n; base += WG) {
     const int j = base + get_local_id(0);
-    if (j < n) u[j] = scale * (j == k + 1 ? first - e : u[j]);
+    if (j < n) u[j] = h.scale * (j == k + 1 ? first - h.e : u[j]);
   }
   barrier(CLK_LOCAL_MEM_FENCE);  // u is written
-  return e;
+  return h.e;
 }
 
 // For the rows and columns past k: t -= v w' + w v' (the previous step's update, delayed until the
@@ -123,9 +116,8 @@ INLINE void update_and_multiply(TRIANGLE real* t, local const real* v, local con
     real sum = 0;
     for (int i = k + 1; i <= j; ++i) {
       TRIANGLE real* entry = t + row_start(i, width) + j;
-      const real updated = fma(-w[i], v[j], fma(-v[i], w[j], *entry));
-      *entry = updated;
-      sum = fma(u[i], updated, sum);
+      *entry = updated(*entry, v[i], w[i], v[j], w[j]);
+      sum = fma(u[i], *entry, sum);
     }
     p[j] = sum;
   }
@@ -153,7 +145,7 @@ INLINE void next_update(local real* v, local real* w, local const real* u, local
     const int j = base + get_local_id(0);
     if (j >= n) continue;
     v[j] = u[j];
-    w[j] = fma(-half_product, u[j], p[j]);
+    w[j] = update_vector(p[j], u[j], half_product);
   }
 }
 

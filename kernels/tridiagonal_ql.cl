@@ -85,24 +85,29 @@ typedef struct {
   vreal d_above, e_above, d_done;  // d[i + 1], e[i + 1], both before the rotation, and new d[i + 2]
 } chain_t;
 
-inline int negligible(const lanes_t* t, int lane, int i) {
-  const real e = t->e[i * VW + lane];
-  const real product = fabs(t->d[i * VW + lane] * t->d[(i + 1) * VW + lane]);
-  return e * e <= fmax((real)(NEGLIGIBLE * NEGLIGIBLE) * product, LANE(real, t->floor, lane));
+// T of one lane.
+typedef struct {
+  const lanes_t* all;
+  int lane;
+} tridiagonal_t;
+
+inline int negligible(const tridiagonal_t t, int i) {
+  global const real* d = t.all->d + i * VW + t.lane;
+  const real e = t.all->e[i * VW + t.lane];
+  const real product = fabs(d[0] * d[VW]);
+  return e * e <= fmax((real)(NEGLIGIBLE * NEGLIGIBLE) * product, LANE(real, t.all->floor, t.lane));
 }
 
-// Moves a lane on to its next block of more than one row, from row l on. It is known that l .. m
-// has not fallen apart, but for its first row; m < l: nothing is known.
+#define ENTRY vreal
+#include "ql.cl"
+
+// Moves a lane on to its next block of more than one row.
 inline void find_block(lanes_t* t, int lane) {
   const int n = t->order[lane];
-  int l = t->l[lane], m = t->m[lane];
-  if (l < m && negligible(t, lane, l)) ++l;
-  while (l < n && l >= m) {
-    if (l == m) ++l;
-    for (m = l; m < n - 1 && !negligible(t, lane, m);) ++m;
-  }
-  t->l[lane] = l < n ? l : 0;
-  t->m[lane] = l < n ? m : 0;
+  const tridiagonal_t own = {t, lane};
+  const int2 block = next_block(own, t->l[lane], t->m[lane], n);
+  t->l[lane] = block.x < n ? block.x : 0;
+  t->m[lane] = block.x < n ? block.y : 0;
 }
 
 // The tridiagonals of the lanes and their first blocks. An empty lane is a matrix of order 0.
@@ -141,8 +146,7 @@ INLINE void start_sweep(const lanes_t* t, chain_t* chain, int high) {
     LANE(real, e_l, lane) = t->e[l * VW + lane];
     LANE(real, d_m, lane) = t->d[m * VW + lane];
   }
-  const vreal shift = (d_next - d_l) / (2 * e_l);
-  chain->g = d_m - d_l + e_l / (shift + copysign(sqrt(fma(shift, shift, (vreal)1)), shift));
+  chain->g = shifted_end(d_l, d_next, e_l, d_m);
   chain->sine = chain->cosine = 1;
   chain->p = chain->d_done = 0;
   chain->split = chain->m;
