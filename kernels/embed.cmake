@@ -1,13 +1,12 @@
-# cmake -D NAME=gram -D SOURCE=gram.cl -D OUTPUT=gram.cl.cpp -P embed.cmake
+# cmake -D NAME=gram -D SOURCE=.../kernels/linalg/gram.cl -D FOLDER=.../kernels -D OUTPUT=gram.cl.cpp -P embed.cmake
 # Writes a .cpp that holds the kernel file as one string; #line keeps file and line in compiler logs.
-# A line `#include "tiles.cl"` is replaced by that file.
+# A line `#include "linalg/tiles.cl"` is replaced by that file of FOLDER.
 file(READ ${SOURCE} text)
-get_filename_component(file ${SOURCE} NAME)
-get_filename_component(folder ${SOURCE} DIRECTORY)
-string(REGEX MATCHALL "#include \"[a-z_]+\\.cl\"" includes "${text}")
+file(RELATIVE_PATH file ${FOLDER} ${SOURCE})
+string(REGEX MATCHALL "#include \"[a-z_/]+\\.cl\"" includes "${text}")
 foreach(include IN LISTS includes)
-  string(REGEX MATCH "[a-z_]+\\.cl" included "${include}")
-  file(READ ${folder}/${included} body)
+  string(REGEX MATCH "[a-z_/]+\\.cl" included "${include}")
+  file(READ ${FOLDER}/${included} body)
   string(FIND "${text}" "${include}" at)
   string(SUBSTRING "${text}" 0 ${at} before)
   string(REGEX MATCHALL "\n" lines "${before}")

@@ -1,6 +1,6 @@
-// The recurrences over the rows of a column, kernels/conjugate_gradients.cl and kernels/banded.cl:
-// in the vectors of this device, and with one real to a vector, as on a GPU, where several rows are
-// loaded at a time.
+// The recurrences over the rows of a column, kernels/matrix_normal/conjugate_gradients.cl and
+// kernels/linalg/banded.cl: in the vectors of this device, and with one real to a vector, as on a
+// GPU, where several rows are loaded at a time.
 #include <numeric>
 
 #include <gtest/gtest.h>

@@ -21,8 +21,9 @@ using test::upload;
 
 double soft(double t, double limit) { return t - std::clamp(t, -limit, limit); }
 
-/// The kernels of kernels/sweep_group.cl on two segments of 301 and 7 rows with 5 columns, against
-/// the steps as methods/robust_pca/reference.cpp has them: mu was 0.5, is 0.7 and will be 1.05.
+/// The kernels of kernels/robust_pca/sweep_group.cl on two segments of 301 and 7 rows with 5
+/// columns, against the steps as methods/robust_pca/reference.cpp has them: mu was 0.5, is 0.7 and
+/// will be 1.05.
 class GroupSweepTest : public testing::TestWithParam<std::tuple<int, bool>> {
  protected:
   GroupSweepTest()

@@ -17,8 +17,8 @@ namespace {
 using test::download;
 using test::upload;
 
-// What kernels/temporal_group.cl makes of two segments of 301 and 7 rows with 5 columns; mu was 0.5
-// and 0.8, will be 0.75 and 1.2.
+// What kernels/temporal_robust_pca/temporal_group.cl makes of two segments of 301 and 7 rows with 5
+// columns; mu was 0.5 and 0.8, will be 0.75 and 1.2.
 struct Updated {
   SegmentBatch X, E, Y, U, next;
   std::vector<double> gaps, splits;  // of all blocks

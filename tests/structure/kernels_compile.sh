@@ -7,14 +7,15 @@ kernels=$1
 shift
 
 status=0 count=0
-for kernel in "$kernels"/*.cl; do
+mapfile -t files < <(find "$kernels" -name '*.cl' | sort)
+for kernel in "${files[@]}"; do
   grep -q '^kernel ' "$kernel" || continue  # is there to be included
   count=$((count + 1))
   clang-14 -x cl -cl-std=CL1.2 -target spir64 -Xclang -finclude-default-header -fsyntax-only \
-    -Wall -Wextra -Werror "$@" -include "$kernels/prelude.cl" "$kernel" ||
+    -Wall -Wextra -Werror -I "$kernels" "$@" -include "$kernels/prelude.cl" "$kernel" ||
     { echo "$kernel: does not compile with $*"; status=1; }
 done
-for kernel in "$kernels"/*.cl; do
+for kernel in "${files[@]}"; do
   [[ $kernel != *_group.cl ]] && grep -Hn '^[^/]*barrier(' "$kernel" &&
     { echo "$kernel: has a barrier; name it NAME_group.cl"; status=1; }
 done

@@ -3,11 +3,14 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string>
 #include <variant>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "moclean/denoise/chain.hpp"
 #include "moclean/report/report.hpp"
 #include "moclean/run/engine.hpp"
 #include "moclean/run/outputs.hpp"
@@ -167,6 +170,20 @@ ExitCode run(DenoiseOptions options) {
   return warn_if_not_converged(report.takes);
 }
 
+// The names joined by spaces, a line at a time.
+std::string lines_of(std::span<const std::string_view> names) {
+  constexpr std::size_t width = 76;
+  std::string text, line;
+  for (const std::string_view name : names) {
+    if (!line.empty() && line.size() + 1 + name.size() > width) {
+      text += line + '\n';
+      line.clear();
+    }
+    line += (line.empty() ? "" : " ") + std::string(name);
+  }
+  return text + line;
+}
+
 }  // namespace
 
 void add_denoise(CLI::App& program, Action& action) {
@@ -180,9 +197,9 @@ void add_denoise(CLI::App& program, Action& action) {
       "The bounds of --verify hold for the default tolerance and are the same for any other;\n"
       "--precision mixed has its own.\n\n"
       "A chain of filters only runs on the host, where missing samples stay missing; slra, rpca,\n"
-      "completion, tslra and interpolate fill them. Steps:\n"
-      "slra rpca tsvd svt completion tslra moving-average gaussian median hampel\n"
-      "butterworth savitzky-golay whittaker whittaker-l1 gcv kalman interpolate;\n"
+      "completion, tslra and interpolate fill them. Steps:\n" +
+      lines_of(step_names()) +
+      ";\n"
       "docs/methods.md has their keys.\n\n"
       "Example:\n"
       "  moclean denoise walk.bvh -o clean.csv --segment-length 200 --verify\n"

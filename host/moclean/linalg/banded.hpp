@@ -18,9 +18,9 @@ struct SharedBands {
   Buffer<Real> bands;
 };
 
-/// Symmetric positive definite band systems along time (kernels/banded.cl): one per column of a
-/// segment, its unknowns the rows. The columns of a vector are solved in its lanes; results depend
-/// on nothing but the column, bit for bit.
+/// Symmetric positive definite band systems along time (kernels/linalg/banded.cl): one per column
+/// of a segment, its unknowns the rows. The columns of a vector are solved in its lanes; results
+/// depend on nothing but the column, bit for bit.
 ///
 /// Delta is the difference of order `width` over the rows of a segment, with free ends; it is empty
 /// where a segment has no more rows than that. Whatever is not positive definite, like a column of

@@ -7,12 +7,12 @@
 namespace moclean {
 
 /// Eigenproblem of many symmetric matrices of any size: Householder tridiagonalisation, implicit QL
-/// with one matrix to a vector lane, and only the eigenvectors asked for (kernels/tridiagonal.cl,
-/// tridiagonal_ql.cl, eigenvectors.cl). Accuracy is that of LAPACK's backward stable solvers:
-/// eigenvalues to a few units of rounding times |A|, so the square root of an eigenvalue of a Gram
-/// matrix is good to about 1e-8 of the largest. Eigenvalues of a graded matrix (entries that
-/// decrease along the diagonal and are that small in their rows and columns, too) are as good
-/// relative to themselves.
+/// with one matrix to a vector lane, and only the eigenvectors asked for
+/// (kernels/linalg/tridiagonal.cl, tridiagonal_ql.cl, eigenvectors.cl). Accuracy is that of
+/// LAPACK's backward stable solvers: eigenvalues to a few units of rounding times |A|, so the
+/// square root of an eigenvalue of a Gram matrix is good to about 1e-8 of the largest. Eigenvalues
+/// of a graded matrix (entries that decrease along the diagonal and are that small in their rows
+/// and columns, too) are as good relative to themselves.
 class SymmetricEigen {
  public:
   /// `panel` as in Tuning. QL drops an off-diagonal of less than `negligible` times the geometric

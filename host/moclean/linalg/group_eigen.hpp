@@ -16,8 +16,8 @@ struct GroupLimits {
 };
 
 /// The form of SymmetricEigen for GPUs, with the same contract and accuracy: a work-group per
-/// matrix (kernels/tridiagonal_group.cl, eigen_group.cl). Householder tridiagonalisation in local
-/// memory where the packed triangle fits, in global memory where not, to the same bits; then
+/// matrix (kernels/linalg/tridiagonal_group.cl, eigen_group.cl). Householder tridiagonalisation in
+/// local memory where the packed triangle fits, in global memory where not, to the same bits; then
 /// implicit QL, whose rotations one work-item computes and all others apply.
 ///
 /// Six vectors of `order` entries have to fit local memory: orders up to 1016 with 48 KiB.

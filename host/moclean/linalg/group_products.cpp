@@ -9,7 +9,7 @@
 namespace moclean {
 namespace {
 
-// The tile of a work-group, as kernels/products_group.cl cuts it.
+// The tile of a work-group, as kernels/linalg/products_group.cl cuts it.
 constexpr Index tile_across = 64;
 constexpr Index tile_down(int work_group) { return work_group / 4; }
 

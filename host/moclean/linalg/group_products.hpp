@@ -7,8 +7,8 @@
 namespace moclean {
 
 /// The products of class Products in their form for GPUs: tiles of work-groups, with slices of the
-/// factors in local memory (kernels/products_group.cl). Every sum runs in increasing order, so the
-/// results do not depend on the size of the work-group.
+/// factors in local memory (kernels/linalg/products_group.cl). Every sum runs in increasing order,
+/// so the results do not depend on the size of the work-group.
 template <class Real = double>
 class GroupProducts {
  public:

@@ -8,8 +8,8 @@
 namespace moclean {
 
 /// Norms of the active segments of a stacked matrix of Real, each summed in an order that depends
-/// on the segment alone: by a work-item per block of rows (kernels/norms.cl), or with
-/// KernelForm::gpu by a work-group (kernels/norms_group.cl).
+/// on the segment alone: by a work-item per block of rows (kernels/linalg/norms.cl), or with
+/// KernelForm::gpu by a work-group (kernels/linalg/norms_group.cl).
 template <class Real>
 class Norms {
  public:

@@ -11,7 +11,7 @@ struct Peak {
   double bytes = 0;  ///< read and written while copying far more than its caches hold
 };
 
-/// Runs two short kernels of kernels/peak.cl, about a fifth of a second on a CPU.
+/// Runs two short kernels of kernels/linalg/peak.cl, about a fifth of a second on a CPU.
 /// Throws DeviceError if the device has no double precision.
 Peak measure_peak(const Device& device);
 

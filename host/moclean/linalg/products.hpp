@@ -7,11 +7,11 @@
 
 namespace moclean {
 
-/// -D options of the programs that use kernels/tiles.cl.
+/// -D options of the programs that use kernels/linalg/tiles.cl.
 Defines product_defines(const Device& device, NumberType type = NumberType::float64,
                         const Tuning& tuning = {});
 
-/// Products of our own kernels in the CPU form (kernels/products.cl).
+/// Products of our own kernels in the CPU form (kernels/linalg/products.cl).
 template <class Real = double>
 class OwnProducts {
  public:

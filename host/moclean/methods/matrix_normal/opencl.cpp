@@ -1,5 +1,5 @@
-// Notation as in methods/matrix_normal/window.hpp and kernels/conjugate_gradients.cl: Q = A'A, Z
-// its eigenvectors in rows, R = Z' diag(f) Z about Q^-1, W weights over variances.
+// Notation as in methods/matrix_normal/window.hpp and kernels/matrix_normal/conjugate_gradients.cl:
+// Q = A'A, Z its eigenvectors in rows, R = Z' diag(f) Z about Q^-1, W weights over variances.
 #include "moclean/methods/matrix_normal/opencl.hpp"
 
 #include <algorithm>

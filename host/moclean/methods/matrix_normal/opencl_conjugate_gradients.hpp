@@ -8,9 +8,9 @@
 namespace moclean::opencl {
 
 /// What the conjugate gradients of a batch work on, in the notation of
-/// kernels/conjugate_gradients.cl. Stacked matrices are [rows x columns], R is square, precisions
-/// are one per row of all segments, 0 of the last two of each, stiffness is the diagonal of R,
-/// least what keeps the preconditioner of a segment definite.
+/// kernels/matrix_normal/conjugate_gradients.cl. Stacked matrices are [rows x columns], R is
+/// square, precisions are one per row of all segments, 0 of the last two of each, stiffness is the
+/// diagonal of R, least what keeps the preconditioner of a segment definite.
 struct ConjugateGradientsMemory {
   /// Sums over columns are kept per `vector_width` of them.
   ConjugateGradientsMemory(MemoryLayout& of, KernelForm form, int vector_width);
@@ -24,8 +24,8 @@ struct ConjugateGradientsMemory {
 
 /// Preconditioned conjugate gradients for S = argmin sum W (D - S)^2 + tr(P Delta S R (Delta S)')
 /// of the segments of a batch, none of them wide. A search direction and its product are found by
-/// register tiles, a work-item per block of rows (kernels/search_direction.cl), or with
-/// KernelForm::gpu by work-groups (kernels/search_direction_group.cl).
+/// register tiles, a work-item per block of rows (kernels/matrix_normal/search_direction.cl), or
+/// with KernelForm::gpu by work-groups (kernels/matrix_normal/search_direction_group.cl).
 class ConjugateGradients {
  public:
   using Memory = ConjugateGradientsMemory;

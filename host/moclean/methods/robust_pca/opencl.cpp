@@ -1,7 +1,7 @@
 // Notation as in methods/robust_pca/reference.cpp, here for all active segments of a batch at once:
 //   D, A, E, X, Y   stacked matrices; X is what singular value thresholding is applied to; X+ and
 //                   Y+ are those of the next iteration
-//   T               mu (D - A) + Y, which tells Y+ and E; order ea: Y (kernels/entry.cl)
+//   T               mu (D - A) + Y, which tells Y+ and E; order ea: Y (kernels/robust_pca/entry.cl)
 //   G = X'X         Gram matrix (XX' where rows < columns), eigenvalues sigma^2, eigenvectors Z
 //   f, W            f_k = max(1 - (1/mu)/sigma_k, 0), W = Z' diag(f) Z, so that SVT_{1/mu}(X) = XW
 //   V               Z' for the vectors with f_k > 0
@@ -155,7 +155,7 @@ typename RobustPcaSolver<Real>::GramSource RobustPcaSolver<Real>::gram_source(
     const Memory& m) const {
   if (graded(m.tau)) return GramSource::rotated;
   if (mixed) return GramSource::single_floats;
-  // The first X of order ae is pure (kernels/robust_pca.cl) and takes no eigenproblem.
+  // The first X of order ae is pure (kernels/robust_pca/robust_pca.cl) and takes no eigenproblem.
   const bool first = m.iteration == 0 && m.ea;
   return swept(m) && !first ? GramSource::last_sweep : GramSource::whole_matrix;
 }

@@ -37,7 +37,7 @@ class RobustPcaSolver {
   using Memory = RobustPcaMemory<Real>;
   static constexpr bool mixed = Memory::mixed;
 
-  // Of kernels/grams.cl: what a sweep leaves to be summed, and mixed precision.
+  // Of kernels/robust_pca/grams.cl: what a sweep leaves to be summed, and mixed precision.
   struct GramKernels {
     GramKernels(const Device& device, const Tuning& tuning);
 

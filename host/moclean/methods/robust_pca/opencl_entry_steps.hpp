@@ -8,7 +8,8 @@
 
 namespace moclean::opencl {
 
-/// -D options of the programs that go over chunks of rows (kernels/sweep.cl, kernels/grams.cl).
+/// -D options of the programs that go over chunks of rows (kernels/robust_pca/sweep.cl,
+/// kernels/robust_pca/grams.cl).
 Defines sweep_defines(const Device& device, NumberType type, const Tuning& tuning);
 
 /// What X is multiplied by in A = XW: W itself, or at low rank V diag(f) Z, of all segments.
@@ -19,8 +20,9 @@ struct Multiplier {
 
 /// The steps of robust PCA that go over the entries of the stacked matrices of a batch, in one of
 /// two forms: explicit vectors, a work-item per block of rows, with the products between two
-/// eigenproblems in the same sweep (kernels/sweep.cl); or, with KernelForm::gpu, a work-group
-/// per block, where every product is a step of its own (kernels/sweep_group.cl).
+/// eigenproblems in the same sweep (kernels/robust_pca/sweep.cl); or, with KernelForm::gpu, a
+/// work-group per block, where every product is a step of its own
+/// (kernels/robust_pca/sweep_group.cl).
 template <class Real>
 class EntrySteps {
  public:

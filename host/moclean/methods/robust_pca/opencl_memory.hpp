@@ -9,7 +9,7 @@
 
 namespace moclean::opencl {
 
-/// Scalars of one segment's iteration; mirrors state_t of kernels/state.cl.
+/// Scalars of one segment's iteration; mirrors state_t of kernels/robust_pca/state.cl.
 struct SegmentState {
   double mu = 0;
   double mu_next = 0;
@@ -38,8 +38,9 @@ inline SegmentOutcome outcome_of(const SegmentState& state) {
 }
 
 /// Everything one batch needs in device memory; allocated once, before the first iteration.
-/// T holds what is kept between iterations (kernels/entry.cl), E in the end. V, which is left where
-/// the eigenproblem was, and G, the Gram matrix of the next X, change places after every iteration.
+/// T holds what is kept between iterations (kernels/robust_pca/entry.cl), E in the end. V, which is
+/// left where the eigenproblem was, and G, the Gram matrix of the next X, change places after every
+/// iteration.
 template <class Real>
 struct RobustPcaMemory {
   /// `sweep_rows` as in Tuning.

@@ -3,7 +3,7 @@
 namespace moclean::opencl {
 namespace {
 
-// X, Y+, T and X+ of order ae (kernels/entry.cl); about the same for order ea.
+// X, Y+, T and X+ of order ae (kernels/robust_pca/entry.cl); about the same for order ea.
 constexpr double flops_per_entry = 20;
 
 // D, T read and written; order ea has A, too.

@@ -7,8 +7,8 @@
 
 namespace moclean::opencl {
 
-/// Work of kernels/sweep.cl on the active segments in the given states; `real` is the size of an
-/// entry of X in bytes.
+/// Work of kernels/robust_pca/sweep.cl on the active segments in the given states; `real` is the
+/// size of an entry of X in bytes.
 ///   sweep    A = XW (4 rows columns rank flops at low rank), 12 flops per entry, and the Gram
 ///            matrix of X+ if it is fused; reads D, X, Y and writes Y+, X+
 ///   shrink   the same without products, from A

@@ -16,8 +16,9 @@ namespace moclean::opencl {
 /// Robust PCA with a second-difference penalty of many segments at once on a device, in double; the
 /// steps are those of methods/temporal_robust_pca/reference.cpp, in the same order. The host looks
 /// at the singular values of every iteration and asks for the vectors of those above nu/mu only.
-/// Steps over entries are taken by a work-item per block of rows (kernels/temporal.cl), or with
-/// KernelForm::gpu by a work-group (kernels/temporal_group.cl).
+/// Steps over entries are taken by a work-item per block of rows
+/// (kernels/temporal_robust_pca/temporal.cl), or with KernelForm::gpu by a work-group
+/// (kernels/temporal_robust_pca/temporal_group.cl).
 class TemporalRobustPcaSolver {
  public:
   /// Throws ArgumentError for a tuning out of its range.

@@ -12,8 +12,8 @@
 
 #define ENTRY real
 #define LOAD(p) (*(p))
-#include "conjugate_sums.cl"
-#include "search_entry.cl"
+#include "matrix_normal/conjugate_sums.cl"
+#include "matrix_normal/search_entry.cl"
 
 #ifndef WG
 #error "WG is not defined: work-items of a work-group, at most SUMS"

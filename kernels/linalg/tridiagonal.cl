@@ -14,7 +14,7 @@
 // Launch: one work-item per active segment.
 
 #define ENTRY vreal
-#include "householder.cl"
+#include "linalg/householder.cl"
 
 // Rows that are updated side by side: enough to hide the latency of an addition, and no more than
 // their factors and sums have registers.

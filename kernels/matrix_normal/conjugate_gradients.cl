@@ -14,8 +14,8 @@
 // Launch: (vectors of columns, active segments). With vectors of one real neighbouring work-items
 // read neighbouring reals, as a GPU likes it.
 
-#include "conjugate_sums.cl"
-#include "load_rows.cl"
+#include "linalg/load_rows.cl"
+#include "matrix_normal/conjugate_sums.cl"
 
 #define AHEAD 12  // rows from a row to what is fetched for the recurrences below or above it
 

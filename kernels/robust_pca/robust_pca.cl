@@ -11,7 +11,7 @@
 //
 // Launch: one work-item per active segment.
 
-#include "state.cl"
+#include "robust_pca/state.cl"
 
 kernel void start_state(global const segment_t* segments,  // [segments]
                         global const int* active,          // [active_count]

@@ -1,8 +1,8 @@
 // Gram matrices of segments from those of their blocks of rows, and what lies between matrices X in
 // single precision and square matrices in double precision.
 
-#include "state.cl"
-#include "tiles.cl"
+#include "linalg/tiles.cl"
+#include "robust_pca/state.cl"
 
 #ifndef SWEEP_ROWS
 #error "SWEEP_ROWS is not defined: rows that are widened to double at a time"
@@ -38,7 +38,7 @@ inline vfloat narrowed(vreal v) { return JOIN(convert_float, VW)(v); }
 
 #define ENTRY vfloat
 #define SCALAR float
-#include "entry.cl"
+#include "robust_pca/entry.cl"
 
 INLINE vfloat load_floats(global const float* p) { return *(global const vfloat*)p; }
 INLINE void store_floats(global float* p, vfloat v) { *(global vfloat*)p = v; }

@@ -12,7 +12,7 @@
 #define ENTRY real
 #define LOAD(p) (*(p))
 #define STORE(p, v) (*(p) = (v))
-#include "temporal_entry.cl"
+#include "temporal_robust_pca/temporal_entry.cl"
 
 kernel __attribute__((reqd_work_group_size(WG, 1, 1))) void shift(
     global const segment_t* segments,  // [segments]

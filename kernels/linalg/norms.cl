@@ -6,7 +6,7 @@
 // Launch: one work-item per block (block_norms), one per active segment (segment_norms).
 
 #define ENTRY vreal
-#include "norms_entry.cl"
+#include "linalg/norms_entry.cl"
 
 kernel void block_norms(global const segment_t* segments,  // [segments]
                         global const block_t* blocks,      // [blocks]

@@ -99,7 +99,7 @@ inline int negligible(const tridiagonal_t t, int i) {
 }
 
 #define ENTRY vreal
-#include "ql.cl"
+#include "linalg/ql.cl"
 
 // Moves a lane on to its next block of more than one row.
 inline void find_block(lanes_t* t, int lane) {

@@ -9,9 +9,9 @@
 
 #define ENTRY vreal
 #define LOAD load
-#include "conjugate_sums.cl"
-#include "search_entry.cl"
-#include "tiles.cl"
+#include "linalg/tiles.cl"
+#include "matrix_normal/conjugate_sums.cl"
+#include "matrix_normal/search_entry.cl"
 
 #ifndef CHUNK
 #error "CHUNK is not defined: rows from the second differences to their product with R"

@@ -6,11 +6,11 @@
 //   compose      C = PZ
 //   basis        Z', or Z for a wide segment: what to apply to express X in the rows of Z
 //
-// A work-item computes register tiles (kernels/tiles.cl).
+// A work-item computes register tiles (kernels/linalg/tiles.cl).
 // Launch: (tiles across, tiles down the largest order, active segments) for all but apply, which
 // takes one work-item per block of rows, and basis, one per row of a square matrix.
 
-#include "tiles.cl"
+#include "linalg/tiles.cl"
 
 // One tile from `column` on, or vector by vector where they do not fill it.
 INLINE void outer_products(global const real* m, int pitch, int depth, global const real* weight,

@@ -28,7 +28,7 @@
 #pragma OPENCL FP_CONTRACT OFF
 
 #define ENTRY real
-#include "householder.cl"
+#include "linalg/householder.cl"
 
 // t[row_start(i, width) + j] is the entry (i, j), j >= i; width is n packed, the pitch otherwise.
 #if TRIANGLE_IN_LOCAL

@@ -10,7 +10,7 @@
 #define SUMS 256
 
 #define ENTRY real
-#include "norms_entry.cl"
+#include "linalg/norms_entry.cl"
 
 kernel __attribute__((reqd_work_group_size(WG, 1, 1))) void block_norms(
     global const segment_t* segments,  // [segments]

@@ -71,7 +71,7 @@ INLINE int negligible(const tridiagonal_t t, int i) {
 }
 
 #define ENTRY real
-#include "ql.cl"
+#include "linalg/ql.cl"
 
 // What the first work-item knows of T: the eigenvalues before `first` are done, first .. last is an
 // unreduced block, except that its first off-diagonal may be negligible.

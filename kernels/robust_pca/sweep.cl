@@ -1,5 +1,5 @@
 // One sweep over the rows of a segment: what an iteration of robust PCA does between two
-// eigenproblems, in the notation of kernels/entry.cl.
+// eigenproblems, in the notation of kernels/robust_pca/entry.cl.
 //
 //   order ae: X = D - E + Y/mu                A = XW, or (XV) diag(f) V' at low rank
 //             T = mu (D - A) + Y              Y+ = clamp(T, -lambda, lambda), E = (T - Y+) / mu
@@ -14,8 +14,8 @@
 // there already, `finish` gives E at the end. Missing entries are known to `start` and `shrink`
 // only. Launch: one work-item per block of rows.
 
-#include "state.cl"
-#include "tiles.cl"
+#include "linalg/tiles.cl"
+#include "robust_pca/state.cl"
 
 #ifndef SWEEP_ROWS
 #error "SWEEP_ROWS is not defined: rows from the product to the Gram matrix"
@@ -23,7 +23,7 @@
 
 #define ENTRY vreal
 #define SCALAR real
-#include "entry.cl"
+#include "robust_pca/entry.cl"
 
 // What a sweep reports of its block.
 typedef struct {

@@ -14,7 +14,7 @@
 // Launch: (vectors of columns, active segments); `shared` factors: one work-item per active
 // segment; penalise: one work-item per block of rows.
 
-#include "load_rows.cl"
+#include "linalg/load_rows.cl"
 
 #ifndef WIDTH
 #error "WIDTH is not defined: half-bandwidth, 1, 2 or 3"

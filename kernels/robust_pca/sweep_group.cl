@@ -1,7 +1,7 @@
 // The element-wise steps of robust PCA where A = XW is a product of its own, in the notation of
-// kernels/entry.cl, a work-group of WG work-items per block of rows: the form for GPUs. Beside
-// products_group.cl it does what sweep.cl does in one go, an entry by the same steps. The residual
-// is summed up in another order.
+// kernels/robust_pca/entry.cl, a work-group of WG work-items per block of rows: the form for GPUs.
+// Beside products_group.cl it does what sweep.cl does in one go, an entry by the same steps. The
+// residual is summed up in another order.
 //
 //   start      Y = dual_scale D, A = 0; where D is missing Y = 0, A = D as it was filled
 //   form       order ae: X = D - E + Y/mu from T
@@ -13,11 +13,11 @@
 // Neighbouring work-items take neighbouring entries, across the rows of a block, which are one run
 // of memory. Launch: WG work-items per active block.
 
-#include "state.cl"
+#include "robust_pca/state.cl"
 
 #define ENTRY real
 #define SCALAR real
-#include "entry.cl"
+#include "robust_pca/entry.cl"
 
 #ifndef WG
 #error "WG is not defined: work-items of a work-group, a power of two"

@@ -10,7 +10,7 @@
 #define ENTRY vreal
 #define LOAD load
 #define STORE store
-#include "temporal_entry.cl"
+#include "temporal_robust_pca/temporal_entry.cl"
 
 kernel void shift(global const segment_t* segments,  // [segments]
                   global const block_t* blocks,      // [block_count]
