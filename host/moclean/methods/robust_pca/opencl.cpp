@@ -208,14 +208,15 @@ void RobustPcaSolver<Real>::threshold(const Batch& batch, Memory& m, bool low_ra
 // takes it from here the Gram matrix of X+.
 template <class Real>
 void RobustPcaSolver<Real>::sweep(const Batch& batch, Memory& m, bool with_gram) {
+  const bool low_rank = !graded(m.tau) && eigen_.leaves_columns();
   products_.reconstruct(batch, m.Z, m.f, m.terms, m.W);
   if constexpr (mixed) {
     // What the sweep multiplies by, in single precision.
     grams_->narrow(per_row(batch), batch.device_segments(), batch.device_active(), m.states, m.W,
                    m.V, m.Z, m.f, m.W_real, m.V_real, m.Z_real, m.f_real);
-    entries_.sweep(batch, m, {m.W_real, m.V_real, m.Z_real, m.f_real}, with_gram);
+    entries_.sweep(batch, m, {m.W_real, m.V_real, m.Z_real, m.f_real, low_rank}, with_gram);
   } else {
-    entries_.sweep(batch, m, {m.W, m.V, m.Z, m.f}, with_gram);
+    entries_.sweep(batch, m, {m.W, m.V, m.Z, m.f, low_rank}, with_gram);
     if (with_gram) sum_partial_grams(batch, m, m.G);
   }
 }
@@ -241,9 +242,8 @@ void RobustPcaSolver<Real>::iterate(const Batch& batch, Memory& m, const RobustP
     apply_and_shrink(batch, m);
   // residual = |D - A - E|_F / |D|_F, mu = min(rho mu, mu_max)
   advance_(per_segment(batch), batch.device_segments(), batch.device_active(), batch.active_count(),
-           m.partial_squares, m.partial_sparse, m.frobenius, method.rho, method.tolerance,
-           cl_int{method.max_iterations}, m.keep_below, cl_int{!graded(next)}, m.states,
-           m.decompose, m.wanted);
+           m.reports, m.frobenius, method.rho, method.tolerance, cl_int{method.max_iterations},
+           m.keep_below, cl_int{!graded(next)}, m.states, m.decompose, m.wanted);
   std::swap(m.V, m.G);
   m.tau = next;
   m.iteration += 1;

@@ -29,6 +29,13 @@ struct SegmentState {
 };
 static_assert(sizeof(SegmentState) == 88);
 
+/// What an iteration reports of a block of rows; mirrors report_t of kernels/state.cl.
+struct BlockReport {
+  double squares = 0;       ///< |D - A - E|_F^2
+  std::int32_t sparse = 0;  ///< whether E is not zero; order ae only
+};
+static_assert(sizeof(BlockReport) == 16);
+
 inline SegmentOutcome outcome_of(const SegmentState& state) {
   // A segment of norm zero was never started: no iteration, and solved.
   return {.iterations = state.iterations,
@@ -65,10 +72,9 @@ struct RobustPcaMemory {
         eigenvalues(device, batch.vector_size()),
         f(device, batch.vector_size()),
         dual(device, batch.vector_size()),
-        partial_squares(device, batch.block_count()),
+        reports(device, batch.block_count()),
         frobenius(device, static_cast<std::size_t>(batch.segments())),
         largest(device, static_cast<std::size_t>(batch.segments())),
-        partial_sparse(device, batch.block_count()),
         decompose(device, static_cast<std::size_t>(batch.segments())),
         wanted(device, static_cast<std::size_t>(batch.segments())),
         terms(device, static_cast<std::size_t>(batch.segments())),
@@ -99,8 +105,9 @@ struct RobustPcaMemory {
   Buffer<Real> W_real, V_real, Z_real, f_real;  // W, V, Z, f in single precision, mixed only
   Buffer<double> V, G, Z, W, partial_grams;
   Buffer<double> eigenvalues, f, dual;
-  Buffer<double> partial_squares, frobenius, largest;
-  Buffer<std::int32_t> partial_sparse, decompose, wanted, terms;
+  Buffer<BlockReport> reports;
+  Buffer<double> frobenius, largest;
+  Buffer<std::int32_t> decompose, wanted, terms;
   Buffer<SegmentState> states;
   double tau = 0;         // (1/mu) / |D|_2, the same for all segments
   double keep_below = 0;  // residual from which on iterations store A
