@@ -206,7 +206,8 @@ kernel void eigenvectors(global const segment_t* segments,  // [segments]
   if (panel >= panel_count) return;
   const int end = vectors * (panel + 1) / panel_count;
   // Loops over the vectors of a panel unroll into registers only if their number is a constant (at
-  // most PANEL, in branches that are never taken, too).
+  // most PANEL, in branches that are never taken, too). Three are taken as two and one: every
+  // width is a quarter of what there is to compile.
 #define TRANSFORM(width)                                                                    \
   transform(s, panels + s.square + v * VW, reflectors + s.square,                           \
             rotations + 2 * (size_t)ROTATIONS_PER_ENTRY * s.square,                         \
@@ -218,8 +219,6 @@ kernel void eigenvectors(global const segment_t* segments,  // [segments]
       TRANSFORM(PANEL);
     } else if (PANEL > 4 && end - v >= 4) {
       TRANSFORM(min(4, PANEL));
-    } else if (PANEL > 3 && end - v >= 3) {
-      TRANSFORM(min(3, PANEL));
     } else if (PANEL > 2 && end - v >= 2) {
       TRANSFORM(min(2, PANEL));
     } else {

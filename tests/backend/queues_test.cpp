@@ -37,7 +37,7 @@ struct Case {
   const char* name;
   UpdateOrder order = UpdateOrder::ae;
   Precision precision = Precision::f64;
-  EigenForm eigen = EigenForm::lanes;
+  KernelForm eigen = KernelForm::cpu;
   KernelForm form = KernelForm::cpu;
   ProductPath products = ProductPath::own;
 };
@@ -71,9 +71,9 @@ INSTANTIATE_TEST_SUITE_P(
     Modes, QueuesTest,
     testing::Values(Case{.name = "ae"}, Case{.name = "ea", .order = UpdateOrder::ea},
                     Case{.name = "mixed", .precision = Precision::mixed},
-                    Case{.name = "group", .eigen = EigenForm::group},
+                    Case{.name = "group", .eigen = KernelForm::gpu},
                     Case{.name = "clblast", .products = ProductPath::clblast},
-                    Case{.name = "gpu", .eigen = EigenForm::group, .form = KernelForm::gpu}),
+                    Case{.name = "gpu", .eigen = KernelForm::gpu, .form = KernelForm::gpu}),
     [](const auto& parameter) { return parameter.param.name; });
 
 // The limit is searched for: the least that does not throw holds the largest segment alone.

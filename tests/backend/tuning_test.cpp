@@ -85,8 +85,8 @@ INSTANTIATE_TEST_SUITE_P(Modes, TuningTest,
                                          Case{UpdateOrder::ae, Precision::mixed}));
 
 TEST(Tuning, GroupFormOfTheEigensolverAgreesWithTheLanes) {
-  OpenClBackend group(test::device(), {.tuning = Tuning{.eigen = EigenForm::group}});
-  OpenClBackend lanes(test::device(), {.tuning = Tuning{.eigen = EigenForm::lanes}});
+  OpenClBackend group(test::device(), {.tuning = Tuning{.eigen = KernelForm::gpu}});
+  OpenClBackend lanes(test::device(), {.tuning = Tuning{.eigen = KernelForm::cpu}});
 
   for (const UpdateOrder order : {UpdateOrder::ae, UpdateOrder::ea})
     for (const SegmentBatch& data : {usual_segments(), tiny_segments()}) {
@@ -96,8 +96,8 @@ TEST(Tuning, GroupFormOfTheEigensolverAgreesWithTheLanes) {
 }
 
 TEST(Tuning, GroupFormDoesNotDependOnTheNeighbours) {
-  const Tuning together{.eigen = EigenForm::group};
-  const Tuning alone{.eigen = EigenForm::group, .batch_segments = 1};
+  const Tuning together{.eigen = KernelForm::gpu};
+  const Tuning alone{.eigen = KernelForm::gpu, .batch_segments = 1};
   const SegmentBatch data = usual_segments();
 
   expect_same_bits(OpenClBackend(test::device(), {.tuning = together}).solve(data, RobustPca{}),
@@ -132,9 +132,9 @@ TEST(Tuning, DefaultFormsFollowTheKindOfDevice) {
   cpu.kind = DeviceKind::cpu;
   gpu.kind = DeviceKind::gpu;
 
-  EXPECT_EQ(default_tuning(cpu).eigen, EigenForm::lanes);
+  EXPECT_EQ(default_tuning(cpu).eigen, KernelForm::cpu);
   EXPECT_EQ(default_tuning(cpu).form, KernelForm::cpu);
-  EXPECT_EQ(default_tuning(gpu).eigen, EigenForm::group);
+  EXPECT_EQ(default_tuning(gpu).eigen, KernelForm::gpu);
   EXPECT_EQ(default_tuning(gpu).form, KernelForm::gpu);
   EXPECT_EQ(default_tuning(gpu).products, ProductPath::own);
   EXPECT_EQ(default_tuning(gpu).work_group, 64);
@@ -233,7 +233,7 @@ TEST(Profiling, LeavesResultsAsTheyAreAndSeesEveryIteration) {
 
 TEST(Profiling, KnowsTheWorkOfProductsInWorkGroups) {
   const Device profiled(test::device().info().name, Profiling::on);
-  const Tuning tuning{.form = KernelForm::gpu, .work_group = 128, .eigen = EigenForm::group};
+  const Tuning tuning{.form = KernelForm::gpu, .work_group = 128, .eigen = KernelForm::gpu};
   const SegmentBatch data = test::planted_batch({.columns = 31, .rank = 3}, {25, 70});
 
   const Solution solution = OpenClBackend(profiled, {.tuning = tuning}).solve(data, RobustPca{});

@@ -88,7 +88,7 @@ TEST(LocalPostures, CarryFromTheEdges) {
   const LocalPostures postures(take, 0, {{1, 1}, {2, 1}, {3, 1}}, {1}, {0});
   const Frames some = {0, 2, 1};
 
-  const Matrix found = postures.carried({0, 1, 2}, some, postures.others(some));
+  const Matrix found = postures.predicted({0, 1, 2}, some, postures.others(some));
 
   EXPECT_LE((found.row(2) - Eigen::RowVector3d(4, 25, 0)).norm(), 1e-9);
 }

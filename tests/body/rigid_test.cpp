@@ -5,9 +5,9 @@
 #include <Eigen/Geometry>
 #include <gmock/gmock.h>
 
-#include "moclean/body/cuts.hpp"
 #include "moclean/body/jump_flags.hpp"
 #include "moclean/body/rigid_flags.hpp"
+#include "moclean/body/splices.hpp"
 
 #include "support/hand.hpp"
 #include "support/limbs.hpp"
@@ -27,7 +27,7 @@ struct Learned {
         smallest(edge_floor * size),
         body(learn_rigid_body(take, smallest)) {}
 
-  RigidFlags flags() const { return judge(take, body, size, smallest); }
+  RigidFlags flags() const { return vote_on_joints(take, body, size, smallest); }
   Mask jumps(const Mask& trusted) const {
     return jump_flags(take, sudden_steps(take, trusted, least_sudden_step(size, smallest)), body);
   }
@@ -35,9 +35,9 @@ struct Learned {
     const RigidFlags found = flags();
     return found.consistent && !found.bad;
   }
-  std::vector<Index> cut() const {
-    return cuts(trusted(), sudden_steps(take, trusted(), least_sudden_step(size, smallest)), body,
-                jumps(trusted()));
+  std::vector<Index> splice_frames() const {
+    return splices(trusted(), sudden_steps(take, trusted(), least_sudden_step(size, smallest)),
+                   body, jumps(trusted()));
   }
 
   BodyTake take;
@@ -224,7 +224,7 @@ TEST(SuddenSteps, AreNotMadeByDenseNoise) {
     EXPECT_TRUE(std::ranges::none_of(joint.sudden, std::identity{}));
 }
 
-TEST(RigidFlags, VouchForAJointWhoseBonesHoldHoweverItMoves) {
+TEST(RigidFlags, ConfirmAJointWhoseBonesHoldHoweverItMoves) {
   // Joint 8 flips about joint 3 in one frame; the bone keeps its length.
   Matrix samples = test::swinging_limbs(frames, joints);
   const Eigen::RowVector3d pivot = samples.row(200).segment<3>(9);
@@ -235,7 +235,7 @@ TEST(RigidFlags, VouchForAJointWhoseBonesHoldHoweverItMoves) {
   EXPECT_TRUE(flags.confirmed.all());
 }
 
-TEST(RigidFlags, VouchForNobodyInAFrameThatIsMostlyWrong) {
+TEST(RigidFlags, ConfirmNobodyInAFrameThatIsMostlyWrong) {
   // All joints but two are displaced, each another way: the bone of those two still holds.
   Matrix samples = test::swinging_limbs(frames, joints);
   for (Index j = 0; j < joints - 2; ++j)
@@ -315,12 +315,12 @@ Matrix joined(Index at) {
 
 TEST(Cuts, AreWhereAnotherMotionBegins) {
   for (const Index at : {1, 150, 399})  // 1: a pose before the motion
-    EXPECT_THAT(Learned(joined(at)).cut(), testing::ElementsAre(at));
+    EXPECT_THAT(Learned(joined(at)).splice_frames(), testing::ElementsAre(at));
 }
 
 TEST(Cuts, AreNotInOneMotion) {
   for (const Index length : {Index{2}, frames})
-    EXPECT_THAT(Learned(test::swinging_limbs(length, joints)).cut(), testing::IsEmpty());
+    EXPECT_THAT(Learned(test::swinging_limbs(length, joints)).splice_frames(), testing::IsEmpty());
 }
 
 TEST(Cuts, LieBeforeASpoiltFrame) {
@@ -328,7 +328,7 @@ TEST(Cuts, LieBeforeASpoiltFrame) {
   for (Index j = 0; j < joints; ++j)
     samples.row(150).segment<3>(3 * j) += Eigen::RowVector3d(1, -1.5, 0.7) * (1 + j % 4);
 
-  EXPECT_THAT(Learned(samples).cut(), testing::ElementsAre(150));
+  EXPECT_THAT(Learned(samples).splice_frames(), testing::ElementsAre(150));
 }
 
 TEST(Cuts, AreNotMadeByWrongSamples) {
@@ -338,7 +338,7 @@ TEST(Cuts, AreNotMadeByWrongSamples) {
   for (const Index j : {3, 7, 8})  // a third of the body leaves and comes back
     samples.middleRows(200, 50).middleCols(3 * j, 3).rowwise() += Eigen::RowVector3d(2, 1, -1.5);
 
-  EXPECT_THAT(Learned(samples).cut(), testing::IsEmpty());
+  EXPECT_THAT(Learned(samples).splice_frames(), testing::IsEmpty());
 }
 
 }  // namespace

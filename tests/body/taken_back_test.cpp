@@ -22,7 +22,7 @@ RigidFlags flags_in_noise(Matrix samples, bool white = true) {
   for (double& x : samples.reshaped()) x += noise * random.normal();
   const BodyTake take = body_take(samples, 120);
   const double smallest = noise_of_distance * noise;
-  return judge(take, learn_rigid_body(take, smallest), body_size(take), smallest, white);
+  return vote_on_joints(take, learn_rigid_body(take, smallest), body_size(take), smallest, white);
 }
 
 TEST(TakeBackTurning, KeepsAThumbThatFlipsThoughNoiseHidesItsBone) {

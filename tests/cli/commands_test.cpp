@@ -174,7 +174,7 @@ TEST(Convert, TurnsASkeletonIntoJointPositions) {
   const Outcome outcome = run({"convert", take.string(), folder / "take.npy", "--frames", "10:30"});
 
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  const Recording expected = cut(read_recording(take), 10, 30);
+  const Recording expected = excerpt(read_recording(take), 10, 30);
   EXPECT_TRUE(same_bits(read_recording(folder / "take.npy").samples, expected.samples));
 }
 

@@ -93,7 +93,7 @@ TEST(DenoiseFiles, FramesGiveTheResultOfTheCutRecording) {
   const TemporaryFolder folder;
   const Recording walk = synthetic_walk(120);
   const std::string whole = folder.write("walk.npy", walk);
-  const std::string part = folder.write("part.npy", cut(walk, 30, 120));
+  const std::string part = folder.write("part.npy", excerpt(walk, 30, 120));
 
   ASSERT_EQ(run({"denoise", whole, "-o", folder / "a.npy", "--frames", "30:"}).exit_code, 0);
   ASSERT_EQ(run({"denoise", part, "-o", folder / "b.npy"}).exit_code, 0);

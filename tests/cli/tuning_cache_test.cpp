@@ -29,7 +29,7 @@ const Tuning tuning{.tile_rows = 6,
                     .form = KernelForm::gpu,
                     .products = ProductPath::clblast,
                     .work_group = 32,
-                    .eigen = EigenForm::group,
+                    .eigen = KernelForm::gpu,
                     .batch_segments = 64,
                     .queues = 3};
 
@@ -91,7 +91,7 @@ TEST_F(TuningCache, ChoiceOutOfItsRangeIsAProblem) {
       {"\"tile_rows\": 6", "\"tile_rows\": 1e30"},
       {"\"panel\": 2", "\"panels\": 2"},
       {"\"sweep_rows\": 48", "\"sweep_rows\": \"\""},
-      {"\"eigen\": \"group\"", "\"eigen\": \"grape\""},
+      {"\"eigen\": \"gpu\"", "\"eigen\": \"grape\""},
       {"\"clblast\"", "\"blas\""},
       {"\"clblast\"", "\"group\""},
       {"\"form\": \"gpu\"", "\"form\": \"group\""},
@@ -137,6 +137,15 @@ TEST_F(TuningCache, FileFromBeforeFormsHadANameTellsThemByItsProducts) {
   EXPECT_EQ(own.tuning->products, ProductPath::own);
   EXPECT_EQ(clblast.tuning->form, KernelForm::cpu);
   EXPECT_EQ(clblast.tuning->products, ProductPath::clblast);
+}
+
+TEST_F(TuningCache, FileFromBeforeFormsHadANameTellsThatOfTheEigensolver) {
+  const CachedTuning group = read_changed("\"eigen\": \"gpu\"", "\"eigen\": \"group\"");
+  const CachedTuning lanes = read_changed("\"eigen\": \"gpu\"", "\"eigen\": \"lanes\"");
+
+  ASSERT_TRUE(group.tuning && lanes.tuning) << group.problem << lanes.problem;
+  EXPECT_EQ(group.tuning->eigen, KernelForm::gpu);
+  EXPECT_EQ(lanes.tuning->eigen, KernelForm::cpu);
 }
 
 TEST_F(TuningCache, LiesInTheCacheDirectoryOfTheUser) {

@@ -64,7 +64,7 @@ TEST(ParseChain, ReadsTheOverlapOfSegments) {
 }
 
 TEST(ParseChain, ReadsAutomaticSegmentsOfSlra) {
-  const Step automatic = LowRank{{.segments = 3, .automatic = true}, RobustPca{}};
+  const Step automatic = LowRank{{.segments = 3, .cheapest = true}, RobustPca{}};
 
   EXPECT_EQ(parse_chain("slra:segments=3,segment=auto")[0], automatic);
   EXPECT_EQ(parse_chain("slra:segments=3", {.automatic = true})[0], automatic);

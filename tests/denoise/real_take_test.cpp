@@ -32,7 +32,7 @@ class PaperTable3 : public testing::TestWithParam<Row> {};
 TEST_P(PaperTable3, FdOf14_06IsTheKnownFigure) {
   const auto file = test::shared_data("cmu/14/14_06.amc");
   MOCLEAN_REQUIRE_FILE(file);
-  const Recording truth = cut(read_recording(file), 0, 2800);
+  const Recording truth = excerpt(read_recording(file), 0, 2800);
   OpenClBackend backend(test::device());
   const Row row = GetParam();
   LowRankDenoiser denoiser({.whole = row.length == 0, .length = row.length}, RobustPca{}, backend);
@@ -100,7 +100,7 @@ TEST(TemporalRobustPca, BeatsItsFigureOnTheNoiseOfThePaper) {
   std::vector<Recording> truths, noisy;
   for (const auto& [take, first, last] : cuts) {
     const auto file = test::shared_data(std::string("cmu/") + take + ".amc");
-    truths.push_back(cut(read_recording(file), first, last));
+    truths.push_back(excerpt(read_recording(file), first, last));
     noisy.push_back(corrupt(truths.back(), GaussianFrames{.fraction = 0.3333}, 1).clip);
   }
   OpenClBackend backend(test::device());

@@ -149,7 +149,7 @@ TEST(SampleStatus, RefusesWhatDoesNotFit) {
   Recording rateless = take;
   rateless.frame_rate = 0;
   Denoised result = result_of(take);
-  Denoised shorter = result_of(cut(take, 0, 5));
+  Denoised shorter = result_of(excerpt(take, 0, 5));
 
   EXPECT_THAT([&] { trusted_samples(take, shorter); },
               ThrowsMessage<ShapeError>(HasSubstr("5 frames x 4 columns, the take 6 x 4")));

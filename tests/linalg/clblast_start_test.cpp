@@ -28,7 +28,7 @@ namespace {
     const Batch batch(device, data, 0, 1);
     const Buffer<double> stacked(device, std::span<const double>(data.storage()));
     Buffer<double> g(device, batch.square_size());
-    Products products(device, {.products = ProductPath::clblast});
+    Products<double> products(device, {.products = ProductPath::clblast});
     start.arrive_and_wait();
     products.gram(batch, stacked, g, GramOf::all);
     std::vector<double> values(batch.square_size());

@@ -67,7 +67,7 @@ class GroupProductsTest : public testing::TestWithParam<std::tuple<int, Shape>> 
   SegmentBatch data_;
   Batch batch_;
   Buffer<double> x_;
-  GroupProducts products_;
+  GroupProducts<double> products_;
 };
 
 TEST_P(GroupProductsTest, GramMatchesReferenceInTheUpperTriangle) {
@@ -171,7 +171,7 @@ TEST_P(GroupProductsTest, GramOfASegmentDependsNeitherOnItsNeighboursNorOnTheWor
   const Batch single(test::device(), alone, 0, 1);
   Buffer<double> g = unwritten(single.square_size());
 
-  GroupProducts(test::device(), 32)
+  GroupProducts<double>(test::device(), 32)
       .gram(single, Buffer<double>(test::device(), std::as_const(alone).storage()), g);
 
   std::vector<double> values(single.square_size());
@@ -197,8 +197,8 @@ INSTANTIATE_TEST_SUITE_P(Shapes, GroupProductsTest,
                          name_of);
 
 TEST(GroupProducts, RefusesAWorkGroupItHasNoTileFor) {
-  EXPECT_THROW(GroupProducts(test::device(), 8), ArgumentError);
-  EXPECT_THROW(GroupProducts(test::device(), 512), ArgumentError);
+  EXPECT_THROW(GroupProducts<double>(test::device(), 8), ArgumentError);
+  EXPECT_THROW(GroupProducts<double>(test::device(), 512), ArgumentError);
 }
 
 }  // namespace

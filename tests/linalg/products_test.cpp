@@ -58,7 +58,7 @@ class ProductsTest : public testing::TestWithParam<std::tuple<Way, Shape>> {
   SegmentBatch data_;
   Batch batch_;
   Buffer<double> x_;
-  Products products_;
+  Products<double> products_;
 };
 
 TEST_P(ProductsTest, GramMatchesReferenceInTheUpperTriangle) {

@@ -70,7 +70,7 @@ TEST(Cut, KeepsTheRowsAndWhatTheRecordingSays) {
   clip.frame_rate = 120;
   clip.unit = "mm";
 
-  const Recording part = cut(clip, 1, 3);
+  const Recording part = excerpt(clip, 1, 3);
 
   EXPECT_THAT(part.samples.reshaped(), ElementsAre(11, 12));
   EXPECT_EQ(part.columns, clip.columns);
@@ -132,7 +132,7 @@ TEST(JointPositions, KeepSkeletonChannelsAndSource) {
 }
 
 TEST(Cut, KeepsWhatTheRecordingIs) {
-  const Recording part = cut(walk_of_two(), 1, 3);
+  const Recording part = excerpt(walk_of_two(), 1, 3);
 
   EXPECT_EQ(part.samples, walk_of_two().samples.bottomRows(2));
   EXPECT_THAT(part.channels.reshaped(), ElementsAre(0.5, 1));
@@ -181,10 +181,10 @@ TEST(JointParents, AreNoneWithoutASkeleton) {
 TEST(Cut, RejectsRangesOutsideTheTake) {
   const Recording clip = clip_with({"a"}, 4);
 
-  EXPECT_THROW(cut(clip, -1, 2), ShapeError);
-  EXPECT_THROW(cut(clip, 2, 2), ShapeError);
-  EXPECT_THROW(cut(clip, 3, 2), ShapeError);
-  EXPECT_THROW(cut(clip, 0, 5), ShapeError);
+  EXPECT_THROW(excerpt(clip, -1, 2), ShapeError);
+  EXPECT_THROW(excerpt(clip, 2, 2), ShapeError);
+  EXPECT_THROW(excerpt(clip, 3, 2), ShapeError);
+  EXPECT_THROW(excerpt(clip, 0, 5), ShapeError);
 }
 
 }  // namespace

@@ -42,7 +42,7 @@ inline std::string to_string(BackendKind kind) {
 }
 
 inline std::unique_ptr<Backend> make_gpu_backend(int work_group) {
-  const Tuning tuning{.form = KernelForm::gpu, .work_group = work_group, .eigen = EigenForm::group};
+  const Tuning tuning{.form = KernelForm::gpu, .work_group = work_group, .eigen = KernelForm::gpu};
   return std::make_unique<OpenClBackend>(device(), OpenClOptions{.tuning = tuning});
 }
 

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/core/hash.hpp"
 #include "moclean/formats/file.hpp"
 
 #include "cli/options/backend_options.hpp"
@@ -23,13 +24,6 @@ fs::path cache_folder() {
   if (xdg && fs::path(xdg).is_absolute()) return fs::path(xdg) / "moclean";
   const char* const home = std::getenv("HOME");
   return home && *home ? fs::path(home) / ".cache" / "moclean" : fs::path();
-}
-
-// FNV-1a, which unlike std::hash is the same everywhere.
-std::uint64_t hash_of(std::string_view text) {
-  std::uint64_t hash = 14695981039346656037u;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211u;
-  return hash;
 }
 
 // Letters and digits of a device's name, for people who look into the folder.
@@ -70,6 +64,13 @@ void read_form(const Json& record, Tuning& tuning) {
   }
 }
 
+// Files from before form had a name say `lanes` and `group`.
+KernelForm eigen_form(const std::string& text) {
+  if (text == "lanes") return KernelForm::cpu;
+  if (text == "group") return KernelForm::gpu;
+  return parse_kernel_form(text);
+}
+
 // A file from before there were queues, or products in work-groups, leaves them at their default.
 Tuning tuning_of(const Json& record, const DeviceInfo& device) {
   Tuning tuning{.tile_rows = choice(record, "tile_rows"),
@@ -78,7 +79,7 @@ Tuning tuning_of(const Json& record, const DeviceInfo& device) {
                 .panel = choice(record, "panel"),
                 .work_group = record.contains("work_group") ? choice(record, "work_group")
                                                             : default_tuning(device).work_group,
-                .eigen = parse_eigen_form(record.at("eigen").get<std::string>()),
+                .eigen = eigen_form(record.at("eigen").get<std::string>()),
                 .batch_segments = choice(record, "batch_segments"),
                 .queues = record.contains("queues") ? choice(record, "queues")
                                                     : default_tuning(device).queues};
@@ -105,7 +106,7 @@ fs::path tuning_file(const DeviceInfo& device) {
   const fs::path folder = cache_folder();
   if (folder.empty()) return {};
   const std::uint64_t hash =
-      hash_of(identity(device).dump(-1, ' ', false, Json::error_handler_t::replace));
+      Fnv1a().bytes(identity(device).dump(-1, ' ', false, Json::error_handler_t::replace)).value();
   return folder / fmt::format("tuning-{}-{:016x}.json", readable(device.name), hash);
 }
 

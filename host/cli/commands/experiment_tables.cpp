@@ -40,7 +40,7 @@ Takes read_takes(const TableOptions& options) {
     const bool all = !options.frames.first && !options.frames.last;
     const PaperSequence* sequence = all ? find_sequence(take.name) : nullptr;
     const bool is_papers = sequence && take.clip.frames() >= sequence->frames;
-    if (is_papers) take.clip = cut(take.clip, 0, sequence->frames);
+    if (is_papers) take.clip = excerpt(take.clip, 0, sequence->frames);
     result.takes.push_back(std::move(take));
     result.is_papers.push_back(is_papers);
   }

@@ -27,7 +27,7 @@ using Kind = std::vector<Candidate> (*)(const Tuning& settled, bool quick);
 std::vector<Candidate> eigen_forms(const Tuning& settled, bool quick) {
   if (quick) return {};
   Tuning other = settled;
-  other.eigen = settled.eigen == EigenForm::lanes ? EigenForm::group : EigenForm::lanes;
+  other.eigen = settled.eigen == KernelForm::cpu ? KernelForm::gpu : KernelForm::cpu;
   return {{"eigensolver " + to_string(other.eigen), other}};
 }
 
@@ -88,7 +88,7 @@ std::vector<Candidate> sweeps(const Tuning& settled, bool quick) {
 }
 
 std::vector<Candidate> panels(const Tuning& settled, bool quick) {
-  if (settled.eigen != EigenForm::lanes || quick) return {};
+  if (settled.eigen != KernelForm::cpu || quick) return {};
   return variants(settled, "panel", {2, 3, 6, 8}, &Tuning::panel);
 }
 

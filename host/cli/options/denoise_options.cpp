@@ -218,7 +218,7 @@ void require_used(const DenoiseOptions& options) {
     robust_pca = robust_pca || is_robust_pca;
     segmented = segmented || !(is_robust_pca && low_rank->segmentation.whole);
     overlapping = overlapping || low_rank->segmentation.overlap > 0;
-    automatic = automatic || low_rank->segmentation.automatic;
+    automatic = automatic || low_rank->segmentation.cheapest;
   }
   if (!segmented && (options.segment_length || options.segments))
     throw ArgumentError(

@@ -22,7 +22,7 @@ Json segmentation_record(const Segmentation& segmentation) {
   else
     record["length"] = segmentation.length;
   record["overlap"] = segmentation.overlap;
-  record["automatic"] = segmentation.automatic;
+  record["automatic"] = segmentation.cheapest;
   return record;
 }
 

@@ -28,6 +28,21 @@ void require_entries(const SegmentBatch& data, bool missing_accepted) {
 
 }  // namespace
 
+Monitor part_of(const Monitor& whole, const Progress& before) {
+  Monitor part{.stop = whole.stop};
+  if (whole.report)
+    part.report = [&](const Progress& own) {
+      whole.report({.finished = before.finished + own.finished, .total = before.total});
+    };
+  return part;
+}
+
+void FinishedCount::operator()(Index more) {
+  const std::lock_guard lock(reporting_);
+  progress_.finished += more;
+  if (monitor_.report) monitor_.report(progress_);
+}
+
 void require_finite(const SegmentBatch& data) { require_entries(data, false); }
 
 void require_usable(const Problem& problem, const Method& method) {

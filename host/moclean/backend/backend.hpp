@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <mutex>
 #include <stop_token>
 #include <string>
 
@@ -20,6 +21,24 @@ struct Progress {
 struct Monitor {
   std::function<void(const Progress&)> report = {};  ///< called from one thread at a time
   std::stop_token stop = {};  ///< when requested, solve throws Cancelled soon
+};
+
+/// The monitor of one part of some work, whose progress comes on top of that `before` it: reports
+/// before.finished + own of before.total, as they are then. Both outlive it.
+Monitor part_of(const Monitor& whole, const Progress& before);
+
+/// Counts the segments that are finished, on any thread, and reports them one call at a time.
+class FinishedCount {
+ public:
+  FinishedCount(const Monitor& monitor, Index total)
+      : monitor_(monitor), progress_{.finished = 0, .total = total} {}
+
+  void operator()(Index more);
+
+ private:
+  const Monitor& monitor_;
+  std::mutex reporting_;
+  Progress progress_;
 };
 
 /// Largest magnitude of an entry the backends accept: sums of its squares stay finite.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <mutex>
 #include <type_traits>
 
 #include <fmt/format.h>
@@ -123,7 +122,6 @@ class OpenClBackend::Worker {
 OpenClBackend::OpenClBackend(const Device& device, const OpenClOptions& options)
     : device_(device), options_(options), tuning_(tuning_of(device, options)) {
   moclean::check(tuning_);
-  require_double_precision(device);
   if (options_.memory_limit == 0) options_.memory_limit = device.info().usable_memory();
   workers_.push_back(std::make_unique<Worker>(device, options, tuning_));
 }
@@ -177,7 +175,7 @@ opencl::SegmentSize OpenClBackend::size_of(const SegmentBatch& data, Index b,
 
 opencl::BatchPlan OpenClBackend::plan_of(const SegmentBatch& data, const Method& method) const {
   const DeviceInfo& device = device_.info();
-  const bool lanes = tuning_.eigen == EigenForm::lanes;
+  const bool lanes = tuning_.eigen == KernelForm::cpu;
   std::vector<opencl::SegmentSize> sizes;
   for (Index b = 0; b < data.segments(); ++b) sizes.push_back(size_of(data, b, method));
   return opencl::plan_batches(sizes, {.memory = options_.memory_limit,
@@ -230,13 +228,8 @@ Solution OpenClBackend::solve(const Problem& problem, const Method& method,
     solution.trusted.emplace(data.columns(), data.first_rows());
     solution.deviation.emplace(data.columns(), data.first_rows());
   }
-  Progress progress{.finished = 0, .total = data.segments()};
-  std::mutex reporting;
-  const auto finished = [&](Index count) {
-    const std::lock_guard lock(reporting);
-    progress.finished += count;
-    if (monitor.report) monitor.report(progress);
-  };
+  FinishedCount counted(monitor, data.segments());
+  const auto finished = [&](Index more) { counted(more); };
   prepare(method);
   const opencl::BatchPlan plan = plan_of(data, method);
   prepare_workers(plan);

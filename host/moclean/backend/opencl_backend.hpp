@@ -29,8 +29,8 @@ inline constexpr double mixed_tolerance = 1e-6;
 
 /// Solves the segments of a batch on an OpenCL device, many at once: they are divided into batches
 /// of which up to Tuning::queues run at the same time, each on a thread with a queue of its own.
-/// One thread at a time may call solve; Monitor::report is called from any of these threads. Throws
-/// DeviceError if the device has no double precision.
+/// One thread at a time may call solve; Monitor::report is called from any of these threads.
+/// Methods throw DeviceError if they need double precision and the device has none.
 class OpenClBackend final : public Backend {
  public:
   /// `device` has to outlive the backend. Throws ArgumentError for a tuning out of its range, and

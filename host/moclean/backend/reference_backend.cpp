@@ -1,7 +1,6 @@
 #include "moclean/backend/reference_backend.hpp"
 
 #include <algorithm>
-#include <mutex>
 
 #include <fmt/format.h>
 
@@ -56,8 +55,7 @@ Solution ReferenceBackend::solve(const Problem& problem, const Method& method,
     solution.deviation.emplace(data.columns(), data.first_rows());
   }
   solution.segments.resize(static_cast<std::size_t>(data.segments()));
-  std::mutex reporting;
-  Progress progress{.finished = 0, .total = data.segments()};
+  FinishedCount finished(monitor, data.segments());
 
   for_each_index(data.segments(), jobs_, [&](Index b) {
     std::visit(
@@ -72,10 +70,7 @@ Solution ReferenceBackend::solve(const Problem& problem, const Method& method,
           solution.segments[static_cast<std::size_t>(b)] = segment.outcome;
         },
         method);
-
-    const std::lock_guard lock(reporting);
-    ++progress.finished;
-    if (monitor.report) monitor.report(progress);
+    finished(1);
   });
   return solution;
 }

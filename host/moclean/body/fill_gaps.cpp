@@ -8,16 +8,16 @@
 #include <utility>
 #include <vector>
 
-#include "moclean/body/carried.hpp"
 #include "moclean/body/gap_trials.hpp"
 #include "moclean/body/posture_regression.hpp"
+#include "moclean/body/rigid_gap_fill.hpp"
 #include "moclean/body/steady_neighbours.hpp"
 
 namespace moclean {
 namespace {
 
-constexpr std::array<std::size_t, 3> carriers = {3, 5, 8};
-constexpr std::size_t fewest_carriers = 3, few_near = 4, many_near = 8;
+constexpr std::array<std::size_t, 3> neighbour_counts = {3, 5, 8};
+constexpr std::size_t fewest_neighbours = 3, few_near = 4, many_near = 8;
 constexpr Index most_features = 20;
 constexpr double share_with_features = 0.6;  // of the frames a feature may not cost
 constexpr std::size_t fewest_postures = 20, most_postures = 400;
@@ -129,7 +129,7 @@ struct Regressions {
 
   Candidates predict(const Gap& gap, const Frames& frames) const {
     const LocalPostures::Others in_few = few.others(frames), in_many = many.others(frames);
-    Candidates found{few.carried(gap, frames, in_few), many.carried(gap, frames, in_many)};
+    Candidates found{few.predicted(gap, frames, in_few), many.predicted(gap, frames, in_many)};
     usual.predict(gap, in_few, {{1e-5, most_features}, {1e-4, most_features}, {1e-3, 8}}, found);
     wide.predict(gap, in_many, {{1e-5, most_features}}, found);
     moved.predict(gap, in_few, {{1e-4, most_features}, {1e-2, most_features}}, found);
@@ -148,7 +148,7 @@ Plan regressed(const BodyTake& take, const Gap& gap, const Neighbours& all, Usab
   Plan plan;
   plan.predict = [&take, &all, regressions](const Gap& one, const Frames& some) {
     Candidates found = regressions->predict(one, some);
-    found.push_back(carried(take, first_of(all, fewest_carriers), one, some));
+    found.push_back(rigid_gap_fill(take, first_of(all, fewest_neighbours), one, some));
     return found;
   };
   plan.rule = learn(take, gap, usable, plan.predict);
@@ -156,13 +156,15 @@ Plan regressed(const BodyTake& take, const Gap& gap, const Neighbours& all, Usab
 }
 
 Plan rigid(const BodyTake& take, const Gap& gap, const Neighbours& all, Usable usable) {
-  if (all.size() < fewest_carriers) return {};
-  for (const Neighbour& n : first_of(all, carriers.back())) usable = with(take, usable, n.joint);
+  if (all.size() < fewest_neighbours) return {};
+  for (const Neighbour& n : first_of(all, neighbour_counts.back()))
+    usable = with(take, usable, n.joint);
   Plan plan;
   plan.predict = [&take, &all](const Gap& one, const Frames& some) {
     Candidates found;
-    for (const std::size_t count : carriers)
-      if (count <= all.size()) found.push_back(carried(take, first_of(all, count), one, some));
+    for (const std::size_t count : neighbour_counts)
+      if (count <= all.size())
+        found.push_back(rigid_gap_fill(take, first_of(all, count), one, some));
     return found;
   };
   plan.rule = learn(take, gap, usable, plan.predict);

@@ -13,7 +13,7 @@
 namespace moclean {
 namespace {
 
-constexpr std::array<double, 4> reaches = {0.05, 0.2, 0.7, 20};
+constexpr std::array<double, 4> decays = {0.05, 0.2, 0.7, 20};
 constexpr double chance_share = 0.1;  // of the usual disagreement
 constexpr double near_edge = 0.2;     // depth up to which a single candidate is surer
 constexpr double shrinkage = 0.05;    // of the errors' covariance to its diagonal
@@ -31,10 +31,10 @@ Prediction predicted(const Gap& gap, const Frames& inner, const Predictor& predi
 }
 
 // How much of the misses at the first edge a frame `away` from it and `beyond` from the other has.
-double share_of_miss(double away, double beyond, double reach) {
+double share_of_miss(double away, double beyond, double decay) {
   const double whole = away + beyond;
-  // sinh(beyond / reach) / sinh(whole / reach), which is a line for a long reach
-  return std::exp(-away / reach) * std::expm1(-2 * beyond / reach) / std::expm1(-2 * whole / reach);
+  // sinh(beyond / decay) / sinh(whole / decay), which is a line for a long decay
+  return std::exp(-away / decay) * std::expm1(-2 * beyond / decay) / std::expm1(-2 * whole / decay);
 }
 
 Index edge_count(const Gap& gap) { return Index{gap.before} + Index{gap.after}; }
@@ -50,10 +50,10 @@ Matrix misses(const BodyTake& take, const Gap& gap, const Prediction& prediction
 
 // The candidate without its edges, misses at these taken out.
 Matrix bridged(const Gap& gap, const Prediction& prediction, std::size_t k, const Matrix& miss,
-               double reach) {
+               double decay) {
   const Index edges = miss.rows(), count = prediction.made[k].rows() - edges;
   Matrix result = prediction.made[k].bottomRows(count);
-  const double frames = reach * static_cast<double>(gap.frames() + 1);
+  const double frames = decay * static_cast<double>(gap.frames() + 1);
   for (Index i = 0; i < count; ++i) {
     const Index frame = prediction.frames[static_cast<std::size_t>(i + edges)];
     const auto left = static_cast<double>(frame - gap.first + 1);
@@ -105,11 +105,11 @@ struct Tried {
 
 // Errors of a candidate at the probes of all trials, one coordinate below the other.
 Eigen::VectorXd errors_of(const BodyTake& take, std::span<const Gap> trials, const Tried& tried,
-                          std::size_t k, double reach) {
+                          std::size_t k, double decay) {
   std::vector<double> found;
   for (std::size_t t = 0; t < trials.size(); ++t) {
     const Matrix miss = misses(take, trials[t], tried.predictions[t], k);
-    const Matrix positions = bridged(trials[t], tried.predictions[t], k, miss, reach);
+    const Matrix positions = bridged(trials[t], tried.predictions[t], k, miss, decay);
     for (std::size_t i = 0; i < tried.inner[t].size(); ++i) {
       const Eigen::RowVector3d off =
           positions.row(static_cast<Index>(i)) - take.position(tried.inner[t][i], trials[t].joint);
@@ -119,19 +119,19 @@ Eigen::VectorXd errors_of(const BodyTake& take, std::span<const Gap> trials, con
   return Eigen::Map<const Eigen::VectorXd>(found.data(), static_cast<Index>(found.size()));
 }
 
-// The errors of all candidates, in columns, each with the best reach.
-Eigen::MatrixXd learn_reaches(const BodyTake& take, std::span<const Gap> trials, const Tried& tried,
-                              FillRule& rule) {
+// The errors of all candidates, in columns, each with the best decay.
+Eigen::MatrixXd learn_decays(const BodyTake& take, std::span<const Gap> trials, const Tried& tried,
+                             FillRule& rule) {
   Eigen::MatrixXd errors;
   const std::size_t count = tried.predictions.front().made.size();
   for (std::size_t k = 0; k < count; ++k) {
     Eigen::VectorXd best;
     rule.shares.push_back({0, 0});
-    for (const double reach : reaches) {
-      Eigen::VectorXd off = errors_of(take, trials, tried, k, reach);
+    for (const double decay : decays) {
+      Eigen::VectorXd off = errors_of(take, trials, tried, k, decay);
       if (best.size() > 0 && !(off.squaredNorm() < best.squaredNorm())) continue;
       best = std::move(off);
-      rule.shares[k].reach = reach;
+      rule.shares[k].decay = decay;
     }
     errors.conservativeResize(best.size(), static_cast<Index>(count));
     errors.col(static_cast<Index>(k)) = best;
@@ -155,7 +155,7 @@ Combined combined(const BodyTake& take, const Gap& gap, const Prediction& predic
   Matrix all_missed = Matrix::Zero(skipped, 3);
   for (std::size_t k = 0; k < rule.shares.size(); ++k) {
     const Matrix miss = misses(take, gap, prediction, k);
-    each.push_back(bridged(gap, prediction, k, miss, rule.shares[k].reach));
+    each.push_back(bridged(gap, prediction, k, miss, rule.shares[k].decay));
     if (rule.shares[k].weight <= 0) continue;  // which may be none
     found.positions += rule.shares[k].weight * each.back();
     all_missed += rule.shares[k].weight * miss;
@@ -208,7 +208,7 @@ FillRule learn_fill_rule(const BodyTake& take, std::span<const Gap> trials, Inde
     tried.inner.push_back(probes(trial, probed));
     tried.predictions.push_back(predicted(trial, tried.inner.back(), predict));
   }
-  const Eigen::MatrixXd errors = learn_reaches(take, trials, tried, rule);
+  const Eigen::MatrixXd errors = learn_decays(take, trials, tried, rule);
   const Eigen::VectorXd weights = best_weights(errors.transpose() * errors);
   for (std::size_t k = 0; k < rule.shares.size(); ++k)
     rule.shares[k].weight = weights(static_cast<Index>(k));

@@ -23,7 +23,7 @@ using Predictor = std::function<Candidates(const Gap&, const Frames&)>;
 struct FillRule {
   struct Share {
     double weight;  ///< of the candidate in the fill; they sum to 1
-    double reach;   ///< over which its miss of an edge dies away, share of the gap's length
+    double decay;   ///< over which its miss of an edge dies away, share of the gap's length
   };
   std::vector<Share> shares;
   double least_disagreement = 0;  ///< added to it: candidates may agree by chance
@@ -34,7 +34,7 @@ struct FillRule {
 };
 
 /// What trials say of the candidates: each has its misses at the edges taken out over the best of
-/// a few reaches; the weights are those of the least mean square of the trials' errors, none below
+/// a few decays; the weights are those of the least mean square of the trials' errors, none below
 /// 0. Empty without trials.
 FillRule learn_fill_rule(const BodyTake& take, std::span<const Gap> trials, Index probed,
                          const Predictor& predict);

@@ -20,10 +20,10 @@ struct RigidMotion {
   Eigen::Matrix3d rotation;
   Eigen::RowVector3d from, to;  ///< weighted centres
 
-  Eigen::RowVector3d carried(const Eigen::RowVector3d& position) const {
+  Eigen::RowVector3d moved(const Eigen::RowVector3d& position) const {
     return to + (position - from) * rotation.transpose();
   }
-  Eigen::RowVector3d carried_back(const Eigen::RowVector3d& position) const {
+  Eigen::RowVector3d moved_back(const Eigen::RowVector3d& position) const {
     return from + (position - to) * rotation;
   }
 };

@@ -23,7 +23,7 @@ LocalPostures::LocalPostures(const BodyTake& take, Index joint, Neighbours near,
     const Index frame = frames_[static_cast<std::size_t>(i)];
     const RigidMotion motion = this->motion(frame);
     features_at_.row(i) = features_in(frame, motion);
-    joint_at_.row(i) = motion.carried_back(take.position(frame, joint));
+    joint_at_.row(i) = motion.moved_back(take.position(frame, joint));
   }
 }
 
@@ -37,7 +37,7 @@ Eigen::RowVectorXd LocalPostures::features_in(Index frame, const RigidMotion& mo
   Eigen::RowVectorXd found(3 * static_cast<Index>(feature_joints_.size()));
   Index column = 0;
   for (const Index k : feature_joints_) {
-    found.segment<3>(column) = motion.carried_back(take_->position(frame, k));
+    found.segment<3>(column) = motion.moved_back(take_->position(frame, k));
     column += 3;
   }
   return found;
@@ -53,16 +53,16 @@ LocalPostures::Others LocalPostures::others(const Frames& frames) const {
   return found;
 }
 
-Matrix LocalPostures::carried(const Gap& gap, const Frames& frames, const Others& others) const {
+Matrix LocalPostures::predicted(const Gap& gap, const Frames& frames, const Others& others) const {
   std::vector<Eigen::RowVector3d> at_edges;
   for (const Index edge : edges(gap))
     at_edges.push_back(
-        others.motions[at_edges.size()].carried_back(take_->position(edge, gap.joint)));
+        others.motions[at_edges.size()].moved_back(take_->position(edge, gap.joint)));
   Matrix found(static_cast<Index>(frames.size()), 3);
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const double late = gap.before && gap.after ? place(gap, frames[i]) : 0;
     const Eigen::RowVector3d local = (1 - late) * at_edges.front() + late * at_edges.back();
-    found.row(static_cast<Index>(i)) = others.motions[i].carried(local);
+    found.row(static_cast<Index>(i)) = others.motions[i].moved(local);
   }
   return found;
 }
@@ -128,7 +128,7 @@ void PostureRegression::predict(const Gap& left_out, const LocalPostures::Others
         weights.bottomRows(columns - 1);
     const Eigen::RowVector3d constant = mean_ + (x_.rows() > 0 ? x_(0, 0) : 0) * weights.row(0);
     for (Index i = 0; i < local.rows(); ++i)
-      local.row(i) = frames.motions[static_cast<std::size_t>(i)].carried(local.row(i) + constant);
+      local.row(i) = frames.motions[static_cast<std::size_t>(i)].moved(local.row(i) + constant);
     found.push_back(std::move(local));
   }
 }

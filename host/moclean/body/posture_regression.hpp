@@ -31,7 +31,7 @@ class LocalPostures {
 
   /// Where the neighbours carry the joint of a gap from its edges, blended linearly, [frames x 3];
   /// `others` are the frames, of which the first are the edges.
-  Matrix carried(const Gap& gap, const Frames& frames, const Others& others) const;
+  Matrix predicted(const Gap& gap, const Frames& frames, const Others& others) const;
 
  private:
   RigidMotion motion(Index frame) const;

@@ -171,7 +171,7 @@ Core steady_core(const std::vector<double>& distances) {
 RigidBody learn_rigid_body(const BodyTake& take, double smallest, double rounding) {
   const bool exactly = noise_of_distance * rounding < exact_edge * smallest;
   RigidBody body;
-  body.judged.assign(static_cast<std::size_t>(take.joints()), false);
+  body.testable.assign(static_cast<std::size_t>(take.joints()), false);
   if (take.joints() < fewest_joints) return body;
   std::vector<Pair> pairs;
   for (Index a = 0; a < take.joints(); ++a)
@@ -189,10 +189,10 @@ RigidBody learn_rigid_body(const BodyTake& take, double smallest, double roundin
   for (const Pair& pair : pairs)
     if (pair.edge.hard)
       for (const Index j : {pair.edge.first, pair.edge.second})
-        body.judged[static_cast<std::size_t>(j)] = true;
-  const auto judged = [&](Index j) { return body.judged[static_cast<std::size_t>(j)]; };
+        body.testable[static_cast<std::size_t>(j)] = true;
+  const auto testable = [&](Index j) { return body.testable[static_cast<std::size_t>(j)]; };
   for (const Pair& pair : pairs) {
-    if (pair.steady && (judged(pair.edge.first) || judged(pair.edge.second)))
+    if (pair.steady && (testable(pair.edge.first) || testable(pair.edge.second)))
       body.edges.push_back(pair.edge);
   }
   return body;

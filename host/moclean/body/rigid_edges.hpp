@@ -30,10 +30,10 @@ struct RigidEdge {
 /// count where both joints have two other rigid ones.
 struct RigidBody {
   std::vector<RigidEdge> edges;  ///< among the six steadiest of either joint
-  std::vector<bool> judged;      ///< [joints]: has a hard edge, so its errors show as wrong lengths
+  std::vector<bool> testable;    ///< [joints]: has a hard edge, so its errors show as wrong lengths
 
   bool empty() const { return edges.empty(); }
-  bool is_rigid() const;  ///< has a hard edge, so that joints can be judged
+  bool is_rigid() const;  ///< has a hard edge, so that the votes of joints tell
 };
 
 /// A distance of two joints, and how much its frame counts.

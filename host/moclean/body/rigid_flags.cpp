@@ -30,14 +30,14 @@ void compare(const EdgeDistances& d, const EdgeLimits& limits, Index frame, Mark
 class Votes {
  public:
   explicit Votes(const RigidBody& body)
-      : body_(body), own_(body.judged.size()), share_(body.judged.size()) {
+      : body_(body), own_(body.testable.size()), share_(body.testable.size()) {
     for (std::size_t e = 0; e < body.edges.size(); ++e)
       for (const std::size_t j : ends(e)) own_[j].push_back(e);
   }
 
-  // Blames the joints of a frame one after the other, the worst first. `weight` is that of its
+  // Votes out the joints of a frame one after the other, the worst first. `weight` is that of its
   // edges, 0 where an end was not seen; `off` tells the wrong ones.
-  void blame(const Row& weight, const Marks& off, Index frame, Mask& bad) {
+  void vote_out(const Row& weight, const Marks& off, Index frame, Mask& bad) {
     left_ = weight;
     for (std::size_t j = 0; j < own_.size(); ++j) count(j, off);
     for (std::size_t round = 0; round + 3 < own_.size(); ++round) {
@@ -56,7 +56,7 @@ class Votes {
             static_cast<std::size_t>(body_.edges[edge].second)};
   }
 
-  // The share of a joint's edges between joints not blamed that are off, by weight.
+  // The share of a joint's edges between joints not voted out that are off, by weight.
   void count(std::size_t joint, const Marks& off) {
     double all = 0, wrong = 0;
     for (const std::size_t e : own_[joint]) {
@@ -67,21 +67,22 @@ class Votes {
     share_[joint] = all > 0 ? wrong / all : 0;
   }
 
-  // Of the joints that can be judged; the number of joints if there is none.
+  // Of the joints that can be tested; the number of joints if there is none.
   std::size_t largest_share() const {
     std::size_t worst = share_.size();
     for (std::size_t j = 0; j < share_.size(); ++j)
-      if (body_.judged[j] && (worst == share_.size() || share_[j] > share_[worst])) worst = j;
+      if (body_.testable[j] && (worst == share_.size() || share_[j] > share_[worst])) worst = j;
     return worst;
   }
 
   const RigidBody& body_;
   std::vector<std::vector<std::size_t>> own_;  // edges of every joint
   std::vector<double> share_;
-  Row left_;  // weights of the edges between joints that are not blamed
+  Row left_;  // weights of the edges between joints that are not voted out
 };
 
-void blame_all(const RigidBody& body, const EdgeDistances& d, const EdgeLimits& limits, Mask& bad) {
+void vote_out_all(const RigidBody& body, const EdgeDistances& d, const EdgeLimits& limits,
+                  Mask& bad) {
   Row weight = limits.limit.square().inverse();
   for (std::size_t e = 0; e < body.edges.size(); ++e)
     weight(static_cast<Index>(e)) *=
@@ -90,7 +91,7 @@ void blame_all(const RigidBody& body, const EdgeDistances& d, const EdgeLimits& 
   Marks off(weight.size());
   for (Index i = 0; i < d.values.rows(); ++i) {
     compare(d, limits, i, off);
-    if (off.any()) votes.blame(d.both.row(i).select(weight, 0), off, i, bad);
+    if (off.any()) votes.vote_out(d.both.row(i).select(weight, 0), off, i, bad);
   }
 }
 
@@ -129,7 +130,7 @@ void close_holes(const BodyTake& take, Mask& bad) {
 
 // The edges that tell of each joint: its exact ones, but all hard ones of a joint without any.
 std::vector<std::vector<Index>> witnesses_of(const RigidBody& body) {
-  const std::size_t joints = body.judged.size();
+  const std::size_t joints = body.testable.size();
   std::vector<bool> has_exact(joints, false);
   for (const RigidEdge& edge : body.edges)
     for (const Index j : {edge.first, edge.second})
@@ -144,8 +145,8 @@ std::vector<std::vector<Index>> witnesses_of(const RigidBody& body) {
   return own;
 }
 
-void vouch(const RigidBody& body, const EdgeDistances& d, const EdgeLimits& limits,
-           RigidFlags& flags) {
+void confirm(const RigidBody& body, const EdgeDistances& d, const EdgeLimits& limits,
+             RigidFlags& flags) {
   constexpr Index enough = 2;
   const std::vector<std::vector<Index>> witnesses = witnesses_of(body);
   const auto linked =
@@ -170,8 +171,8 @@ void vouch(const RigidBody& body, const EdgeDistances& d, const EdgeLimits& limi
 
 }  // namespace
 
-RigidFlags judge(const BodyTake& take, const RigidBody& body, double size, double smallest,
-                 bool noise_is_white) {
+RigidFlags vote_on_joints(const BodyTake& take, const RigidBody& body, double size, double smallest,
+                          bool noise_is_white) {
   const Mask none = Mask::Constant(take.frames(), take.joints(), false);
   RigidFlags flags{none, none, none, {}};
   if (!body.is_rigid()) return flags;
@@ -184,11 +185,11 @@ RigidFlags judge(const BodyTake& take, const RigidBody& body, double size, doubl
     limits.limit(static_cast<Index>(e)) = off_deviations * std::max(edge.spread, smallest);
     spreads.push_back(edge.spread);
   }
-  blame_all(body, d, limits, flags.bad);
+  vote_out_all(body, d, limits, flags.bad);
   if (quantile(spreads, 0.1) > dense * size) {
     EdgeDistances slow = d;
     const EdgeLimits slow_limits = slow_down(take, size, slow);
-    blame_all(body, slow, slow_limits, flags.bad);
+    vote_out_all(body, slow, slow_limits, flags.bad);
   }
   close_holes(take, flags.bad);
   if (noise_is_white) flags.bones = noisy_bones(body, d, limits, flags.bad);
@@ -197,7 +198,7 @@ RigidFlags judge(const BodyTake& take, const RigidBody& body, double size, doubl
   take_back_gradual(take, body, d, limits, smallest / noise_of_distance, flags.bad);
   if (!flags.bones.empty()) turned = turning_in_noise(flags.bad, flags.bones, flags.bones.largest);
   flags.bad = flags.bad && !turned;
-  vouch(body, d, limits, flags);
+  confirm(body, d, limits, flags);
   flags.confirmed = flags.confirmed || (turned && !flags.bad);
   return flags;
 }

@@ -56,12 +56,12 @@ std::vector<bool> above_bound(const Velocities& rest, const Velocities& trend, d
   std::vector<double> local = length, sorted = length;
   running_median(local, odd_frames(local_seconds, frame_rate));
   const double usual = median(sorted) / 2;
-  const auto reach = static_cast<std::size_t>(odd_frames(speed_seconds, frame_rate) / 2);
+  const auto half = static_cast<std::size_t>(odd_frames(speed_seconds, frame_rate) / 2);
   std::vector<bool> above(length.size());
   for (std::size_t i = 0; i < above.size(); ++i) {
-    const auto first = speed.begin() + static_cast<std::ptrdiff_t>(i - std::min(i, reach));
+    const auto first = speed.begin() + static_cast<std::ptrdiff_t>(i - std::min(i, half));
     const auto last =
-        speed.begin() + static_cast<std::ptrdiff_t>(std::min(above.size(), i + reach + 1));
+        speed.begin() + static_cast<std::ptrdiff_t>(std::min(above.size(), i + half + 1));
     const double bound = noise_share * std::max(local[i], usual) +
                          speed_share * *std::max_element(first, last) + least;
     above[i] = length[i] > bound;

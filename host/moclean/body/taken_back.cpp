@@ -45,15 +45,15 @@ struct Witness {
   const RigidEdge* edge;
   Index joint;
   Eigen::ArrayXd off;
-  Column seen;  // both ends, and the other is not blamed
+  Column seen;  // both ends, and the other is not voted out
   double limit;
 
   Witness(const RigidBody& body, const EdgeDistances& d, const EdgeLimits& limits, Index e,
-          Index end, const Mask& blamed)
+          Index end, const Mask& out)
       : edge(&body.edges[static_cast<std::size_t>(e)]),
         joint(end),
         off(d.values.col(e).array() - limits.centre(e)),
-        seen(d.both.col(e) && !blamed.col(edge->first == end ? edge->second : edge->first)),
+        seen(d.both.col(e) && !out.col(edge->first == end ? edge->second : edge->first)),
         limit(limits.limit(e)) {}
 
   Column right() const { return seen && off.abs() <= limit; }
@@ -62,13 +62,13 @@ struct Witness {
 // Takes back what exact distances speak against.
 Mask turning_about(const RigidBody& body, const EdgeDistances& d, const EdgeLimits& limits,
                    Index shortest, Mask& bad) {
-  const Mask blamed = bad;
+  const Mask out = bad;
   Mask turned = Mask::Constant(bad.rows(), bad.cols(), false);
   const auto look = [&](const Witness& witness) {
     const Column right = witness.right();
     const double digits =
         mean_deviations * std::max(witness.edge->spread, last_digit * witness.limit);
-    for (const Run& run : runs_of(blamed, witness.joint)) {
+    for (const Run& run : runs_of(out, witness.joint)) {
       const auto kept = run.of(right);
       const Index seen = run.of(witness.seen).count();
       const auto least = spared_share * static_cast<double>(seen);
@@ -84,7 +84,7 @@ Mask turning_about(const RigidBody& body, const EdgeDistances& d, const EdgeLimi
   for (std::size_t e = 0; e < body.edges.size(); ++e)
     if (const RigidEdge& edge = body.edges[e]; edge.exact)
       for (const Index end : {edge.first, edge.second})
-        look({body, d, limits, static_cast<Index>(e), end, blamed});
+        look({body, d, limits, static_cast<Index>(e), end, out});
   return turned;
 }
 
@@ -106,9 +106,9 @@ Mask accused_of(const RigidBody& body, const EdgeDistances& d, const EdgeLimits&
 }  // namespace
 
 NoisyBones noisy_bones(const RigidBody& body, const EdgeDistances& d, const EdgeLimits& limits,
-                       const Mask& blamed) {
+                       const Mask& out) {
   if (std::ranges::any_of(body.edges, &RigidEdge::exact)) return {};
-  const Index frames = blamed.rows(), joints = blamed.cols();
+  const Index frames = out.rows(), joints = out.cols();
   NoisyBones bones{Matrix::Constant(frames, joints, missing), Matrix::Zero(frames, joints), {}, {}};
   bones.noise.setZero(joints);
   bones.chances.setZero(joints);
@@ -116,8 +116,8 @@ NoisyBones noisy_bones(const RigidBody& body, const EdgeDistances& d, const Edge
   for (std::size_t e = 0; e < body.edges.size(); ++e) {
     if (!body.edges[e].hard) continue;
     for (const Index j : {body.edges[e].first, body.edges[e].second}) {
-      const Witness witness(body, d, limits, static_cast<Index>(e), j, blamed);
-      const Column right = witness.right(), usual = right && !blamed.col(j);
+      const Witness witness(body, d, limits, static_cast<Index>(e), j, out);
+      const Column right = witness.right(), usual = right && !out.col(j);
       if (!usual.any()) continue;
       const double noise = witness.limit / off_deviations;
       const double centre = usual.select(witness.off, 0).sum() / static_cast<double>(usual.count());
@@ -166,11 +166,11 @@ Mask take_back_turning(const BodyTake& take, const RigidBody& body, const EdgeDi
 
 void take_back_gradual(const BodyTake& take, const RigidBody& body, const EdgeDistances& d,
                        const EdgeLimits& limits, double noise, Mask& bad) {
-  const Mask blamed = bad, accused = accused_of(body, d, limits, bad);
+  const Mask out = bad, accused = accused_of(body, d, limits, bad);
   for (Index j = 0; j < bad.cols(); ++j)
-    for (const Run& run : runs_of(blamed, j)) {
+    for (const Run& run : runs_of(out, j)) {
       if (2 * run.of(accused.col(j)).count() >= run.frames()) continue;
-      if (!has_edge(take, blamed, j, run.first, run.last, noise))
+      if (!has_edge(take, out, j, run.first, run.last, noise))
         bad.col(j).segment(run.first, run.frames()).setConstant(false);
     }
 }

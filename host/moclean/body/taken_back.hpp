@@ -5,7 +5,7 @@
 namespace moclean {
 
 /// Takes back flags `bad` [frames x joints] of joints that turned about another: an exact distance
-/// to a joint without blame held for 0.9 of a run of 0.04 s or more. Returns the samples whose
+/// to a joint not voted out held for 0.9 of a run of 0.04 s or more. Returns the samples whose
 /// distance is that to the last digit on average: those are right.
 Mask take_back_turning(const BodyTake& take, const RigidBody& body, const EdgeDistances& d,
                        const EdgeLimits& limits, Mask& bad);
@@ -21,9 +21,9 @@ struct NoisyBones {
   bool empty() const { return off.size() == 0; }
 };
 
-/// Without what is `blamed` [frames x joints]. Empty where a distance is exact.
+/// Without what is voted `out` [frames x joints]. Empty where a distance is exact.
 NoisyBones noisy_bones(const RigidBody& body, const EdgeDistances& d, const EdgeLimits& limits,
-                       const Mask& blamed);
+                       const Mask& out);
 
 /// The runs of marked samples [frames x joints], `displaced` by so many deviations of noise, in
 /// which the bone is right up to the noise of the run's average, which chance would hardly do.

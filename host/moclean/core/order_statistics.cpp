@@ -68,17 +68,18 @@ double median(std::span<double> values) { return quantile(values, 0.5); }
 
 void running_median(std::span<double> samples, Index window) {
   const std::vector<double> y(samples.begin(), samples.end());
-  const std::size_t reach = static_cast<std::size_t>(window) / 2;
+  const std::size_t half = static_cast<std::size_t>(window) / 2;
   SortedWindow sorted;
-  for (std::size_t i = 0; i < std::min(reach, y.size()); ++i) sorted.insert(y[i]);
+  for (std::size_t i = 0; i < std::min(half, y.size()); ++i) sorted.insert(y[i]);
   for (std::size_t i = 0; i < y.size(); ++i) {
-    const bool enters = i + reach<y.size(), leaves = i> reach;
+    const bool enters = i + half < y.size();
+    const bool leaves = i > half;
     if (enters && leaves)
-      sorted.replace(y[i - reach - 1], y[i + reach]);
+      sorted.replace(y[i - half - 1], y[i + half]);
     else if (enters)
-      sorted.insert(y[i + reach]);
+      sorted.insert(y[i + half]);
     else if (leaves)
-      sorted.remove(y[i - reach - 1]);
+      sorted.remove(y[i - half - 1]);
     samples[i] = sorted.median();
   }
 }

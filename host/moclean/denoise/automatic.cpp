@@ -54,12 +54,12 @@ void drop(const Mask& joints, Matrix& samples) {
       if (joints(i, j)) samples.row(i).segment<3>(3 * j).setConstant(missing);
 }
 
-// The windows of a take in which other motions begin at the frames `cuts`.
-Spans windows(const Automatic& method, Index frames, std::vector<Index> cuts) {
+// The windows of a take in which other motions begin at the frames `splices`.
+Spans windows(const Automatic& method, Index frames, std::vector<Index> splices) {
   Spans all;
   Index first = 0;
-  cuts.push_back(frames);
-  for (const Index last : cuts) {
+  splices.push_back(frames);
+  for (const Index last : splices) {
     for (const Span& span : overlapping_spans(plan(method, last - first), method.overlap))
       all.push_back({first + span.first, first + span.last});
     first = last;
@@ -80,7 +80,7 @@ void spare_hopeless(const Mask& seen, const Spans& spans, Mask& bad) {
     }
 }
 
-// Takes out what the body says is wrong, and cuts where another motion begins.
+// Takes out what the body says is wrong, and splits where another motion begins.
 void look_at_body(double frame_rate, const Automatic& method, Prepared& prepared) {
   const BodyTake take = body_take(prepared.samples, frame_rate);
   BodyFindings found = look_at(take, prepared.samples);
@@ -103,7 +103,7 @@ Prepared prepare(const Recording& take, const Automatic& method) {
   return prepared;
 }
 
-MotionPrior cut(const MotionPrior& known, const Span& span) {
+MotionPrior excerpt(const MotionPrior& known, const Span& span) {
   MotionPrior part{.size = known.size, .noise = known.noise, .links = known.links};
   if (known.confirmed.size() > 0)
     part.confirmed = known.confirmed.middleRows(span.first, span.frames());
@@ -127,7 +127,7 @@ MatrixNormal matrix_normal_of(const Recording& take, Rejection reject) {
 }
 
 // Takes whose windows share one solve.
-struct Group {
+struct Stack {
   MatrixNormal method;
   std::vector<std::size_t> takes;
   // Once they are stacked:
@@ -137,39 +137,39 @@ struct Group {
 
 // Some of the takes, by columns and by what the method depends on; those that stand still are in
 // none.
-std::vector<Group> group_alike(std::span<const MovingPart> parts, std::span<const std::size_t> some,
-                               Rejection reject) {
-  std::vector<Group> groups;
+std::vector<Stack> stacks_of_alike(std::span<const MovingPart> parts,
+                                   std::span<const std::size_t> some, Rejection reject) {
+  std::vector<Stack> stacks;
   for (const std::size_t t : some) {
     if (parts[t].columns.empty()) continue;
     MatrixNormal method = matrix_normal_of(parts[t].clip, reject);
-    const auto alike = [&](const Group& group) {
-      return group.method == method &&
-             parts[group.takes.front()].columns.size() == parts[t].columns.size();
+    const auto alike = [&](const Stack& stacked) {
+      return stacked.method == method &&
+             parts[stacked.takes.front()].columns.size() == parts[t].columns.size();
     };
-    const auto found = std::ranges::find_if(groups, alike);
-    if (found == groups.end())
-      groups.push_back({std::move(method), {t}});
+    const auto found = std::ranges::find_if(stacks, alike);
+    if (found == stacks.end())
+      stacks.push_back({std::move(method), {t}});
     else
       found->takes.push_back(t);
   }
-  return groups;
+  return stacks;
 }
 
-// The windows of a group one below the other; their priors go to it.
-SegmentBatch stack(std::span<const Prepared> prepared, Group& group) {
+// The windows of a stack one below the other; their priors go to it.
+SegmentBatch stack(std::span<const Prepared> prepared, Stack& stacked) {
   std::vector<Index> first_row = {0};
-  for (const std::size_t t : group.takes) {
-    group.first_segments.push_back(static_cast<Index>(first_row.size()) - 1);
+  for (const std::size_t t : stacked.takes) {
+    stacked.first_segments.push_back(static_cast<Index>(first_row.size()) - 1);
     for (const Span& span : prepared[t].spans) {
       first_row.push_back(first_row.back() + span.frames());
-      group.priors.push_back(cut(prepared[t].prior, span));
+      stacked.priors.push_back(excerpt(prepared[t].prior, span));
     }
   }
-  SegmentBatch data(prepared[group.takes.front()].samples.cols(), std::move(first_row));
-  for (std::size_t i = 0; i < group.takes.size(); ++i) {
-    const Prepared& take = prepared[group.takes[i]];
-    stack_spans(take.samples, take.spans, data, group.first_segments[i]);
+  SegmentBatch data(prepared[stacked.takes.front()].samples.cols(), std::move(first_row));
+  for (std::size_t i = 0; i < stacked.takes.size(); ++i) {
+    const Prepared& take = prepared[stacked.takes[i]];
+    stack_spans(take.samples, take.spans, data, stacked.first_segments[i]);
   }
   return data;
 }
@@ -242,7 +242,7 @@ Mask rejected_motion(const MovingPart& part, const Prepared& prepared, const Den
   return turning_in_noise(rejected, bones, displaced);
 }
 
-// Solves the windows of takes, in groups of those alike, and tells the progress of all.
+// Solves the windows of takes, in stacks of those alike, and tells the progress of all.
 class Solving {
  public:
   Solving(std::span<const MovingPart> parts, std::span<const Prepared> prepared, Rejection reject,
@@ -258,23 +258,19 @@ class Solving {
   void solve(std::span<const std::size_t> some, std::vector<Denoised>& results) {
     for (const std::size_t t : some)
       progress_.total += static_cast<Index>(prepared_[t].spans.size());
-    for (Group& group : group_alike(parts_, some, reject_)) solve(group, results);
+    for (Stack& stacked : stacks_of_alike(parts_, some, reject_)) solve(stacked, results);
   }
 
  private:
-  void solve(Group& group, std::vector<Denoised>& results) {
-    Monitor part{.stop = monitor_.stop};
-    if (monitor_.report)
-      part.report = [&](const Progress& own) {
-        monitor_.report({.finished = progress_.finished + own.finished, .total = progress_.total});
-      };
-    const SegmentBatch data = stack(prepared_, group);
-    const Solution solution = backend_.solve({data, group.priors}, group.method, part);
+  void solve(Stack& stacked, std::vector<Denoised>& results) {
+    const SegmentBatch data = stack(prepared_, stacked);
+    const Solution solution =
+        backend_.solve({data, stacked.priors}, stacked.method, part_of(monitor_, progress_));
     progress_.finished += data.segments();
-    for_each_index(static_cast<Index>(group.takes.size()), jobs_, [&](Index i) {
-      const std::size_t t = group.takes[static_cast<std::size_t>(i)];
+    for_each_index(static_cast<Index>(stacked.takes.size()), jobs_, [&](Index i) {
+      const std::size_t t = stacked.takes[static_cast<std::size_t>(i)];
       results[t] = result_of(parts_[t].clip, prepared_[t], solution,
-                             group.first_segments[static_cast<std::size_t>(i)]);
+                             stacked.first_segments[static_cast<std::size_t>(i)]);
     });
   }
 

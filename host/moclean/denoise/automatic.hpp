@@ -27,8 +27,8 @@ enum class Smoothing { on, off };
 /// body's rules apply (moclean/body):
 ///   joints lost and written as zeros are missing (vanished), joints at wrong distances are
 ///   rejected before anything is fitted (rigid_flags), limbs that jump away and back are
-///   (jump_flags), exact distances hold in gaps, and a take is cut where another motion begins
-///   (cuts): no window reaches across. Soft marker sets have no constant distances, and no such
+///   (jump_flags), exact distances hold in gaps, and a take is split where another motion begins
+///   (splices): no window reaches across. Soft marker sets have no constant distances, and no such
 ///   rules.
 /// Times are in seconds where it matters: rates of 25 to 250 Hz. Joints and columns that never
 /// change stay as they are, and have no say (moving_part.hpp). Adding a constant to a column adds
@@ -54,7 +54,7 @@ struct Automatic {
   }
 };
 
-/// The windows of a take without cuts, before they overlap.
+/// The windows of a take without splices, before they overlap.
 SegmentPlan plan(const Automatic& method, Index frames);
 
 /// Copies of the samples of its takes that AutomaticDenoiser has at a time, the results but sigma

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <limits>
 
-#include "moclean/body/cuts.hpp"
 #include "moclean/body/fill_gaps.hpp"
 #include "moclean/body/jump_flags.hpp"
 #include "moclean/body/length_noise.hpp"
 #include "moclean/body/rigid_flags.hpp"
+#include "moclean/body/splices.hpp"
 #include "moclean/methods/matrix_normal/rounding_step.hpp"
 #include "moclean/methods/matrix_normal/statistics.hpp"
 
@@ -38,7 +38,7 @@ void look_for_jumps(const BodyTake& take, const RigidBody& body, const Mask& con
   std::vector<SuddenSteps> steps =
       sudden_steps(take, trusted, least_sudden_step(found.prior.size, found.smallest));
   Mask jumps = jump_flags(take, steps, body);
-  found.other_motions = cuts(trusted, steps, body, jumps);
+  found.other_motions = splices(trusted, steps, body, jumps);
   if (!found.other_motions.empty()) {
     for (const Index frame : found.other_motions) forget_steps_into(frame, steps);
     jumps = jump_flags(take, steps, body);
@@ -60,7 +60,7 @@ BodyFindings look_at(const BodyTake& take, const Matrix& samples) {
   for (const RigidEdge& edge : body.edges)
     if (edge.hard || edge.exact)
       known.links.push_back({edge.first, edge.second, edge.length, edge.hard, edge.exact});
-  RigidFlags flags = judge(take, body, known.size, found.smallest, known.noise <= 0);
+  RigidFlags flags = vote_on_joints(take, body, known.size, found.smallest, known.noise <= 0);
   found.bad = std::move(flags.bad);
   known.confirmed = std::move(flags.confirmed);
   found.bones = std::move(flags.bones);

@@ -16,9 +16,9 @@ Index segments_of(const Step& step, std::span<const Recording> takes) {
   Index count = 0;
   for (const Recording& take : takes) {
     const auto* low_rank = std::get_if<LowRank>(&step);
-    const SegmentPlan cut = low_rank ? plan(low_rank->segmentation, take.frames())
-                                     : plan(std::get<Automatic>(step), take.frames());
-    count += static_cast<Index>(cut.size()) - 1;
+    const SegmentPlan segments = low_rank ? plan(low_rank->segmentation, take.frames())
+                                          : plan(std::get<Automatic>(step), take.frames());
+    count += static_cast<Index>(segments.size()) - 1;
   }
   return count;
 }

@@ -15,7 +15,7 @@ struct Segmentation {
   Index length = 200;  ///< otherwise: equal segments of about so many frames
   Index overlap = 0;   ///< frames that neighbours share (overlapping_spans) and that are blended
 
-  bool automatic = false;  ///< so many segments, but cut where it costs least (automatic_plan.hpp)
+  bool cheapest = false;  ///< so many segments, but as cost least (cheapest_plans.hpp)
 
   bool operator==(const Segmentation&) const = default;
 };

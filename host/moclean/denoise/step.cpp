@@ -8,19 +8,19 @@ namespace {
 
 constexpr std::string_view slra = "slra", rpca = "rpca";
 
-// What a method is cut into where nothing says: as measured best, or the take whole.
+// What segments a method takes where nothing says: as measured best, or the take whole.
 template <class M>
 constexpr Segmentation default_segmentation = {.whole = true};
 template <>
 constexpr Segmentation default_segmentation<TemporalRobustPca> = {.length = 400};
 
 // Where segments end.
-enum class Division { equal, automatic };
+enum class Division { equal, cheapest };
 constexpr std::array<std::string_view, 2> divisions = {"equal", "auto"};
 
-// The methods that can be cut automatically.
+// The methods whose segments can be planned.
 template <class M>
-constexpr bool can_be_automatic =
+constexpr bool can_be_planned =
     std::is_same_v<M, RobustPca> || std::is_same_v<M, TemporalRobustPca>;
 
 // A method's parameters and those of its segmentation, as one specification has them.
@@ -37,18 +37,18 @@ struct Segmented {
     visitor("segment-length", self.length);
     visitor("segments", self.segments);
     visitor("overlap", self.overlap);
-    if constexpr (can_be_automatic<M>) visitor("segment", self.division, divisions);
+    if constexpr (can_be_planned<M>) visitor("segment", self.division, divisions);
   }
 
   Segmentation segmentation(const StepDefaults& defaults, const Segmentation& otherwise) const {
-    Segmentation cut = defaults.segmentation.value_or(otherwise);
-    if (length) cut = {.length = *length};
-    if (segments) cut = {.segments = *segments};
-    if (cut.whole && overlap.value_or(0) > 0)
+    Segmentation chosen = defaults.segmentation.value_or(otherwise);
+    if (length) chosen = {.length = *length};
+    if (segments) chosen = {.segments = *segments};
+    if (chosen.whole && overlap.value_or(0) > 0)
       throw ArgumentError("overlap needs segment-length or segments");
-    cut.automatic = !cut.whole && division == Division::automatic;
-    if (!cut.whole) cut.overlap = overlap.value_or(defaults.overlap);
-    return cut;
+    chosen.cheapest = !chosen.whole && division == Division::cheapest;
+    if (!chosen.whole) chosen.overlap = overlap.value_or(defaults.overlap);
+    return chosen;
   }
 };
 
@@ -66,9 +66,9 @@ void check(const Segmented<M>& step) {
 template <class M>
 Step read_segmented(const Specification& given, const M& method, const StepDefaults& defaults,
                     const Segmentation& otherwise) {
-  const bool automatic = can_be_automatic<M> && defaults.automatic;
+  const bool automatic = can_be_planned<M> && defaults.automatic;
   const auto step = read_parameters<Segmented<M>>(
-      given, {.method = method, .division = automatic ? Division::automatic : Division::equal});
+      given, {.method = method, .division = automatic ? Division::cheapest : Division::equal});
   return LowRank{step.segmentation(defaults, otherwise), step.method};
 }
 
@@ -115,13 +115,13 @@ std::string method_name(const M& method, const Segmentation& segmentation) {
 std::string specification_of(const LowRank& step) {
   return std::visit(
       [&]<class M>(const M& method) {
-        const Segmentation& cut = step.segmentation;
-        detail::ParameterWriter writer(method_name(method, cut));
+        const Segmentation& chosen = step.segmentation;
+        detail::ParameterWriter writer(method_name(method, chosen));
         M::visit(method, writer);
-        if (!cut.whole && cut.segments == 0) writer("segment-length", cut.length);
-        if (!cut.whole && cut.segments > 0) writer("segments", cut.segments);
-        if (cut.overlap > 0) writer("overlap", cut.overlap);
-        if (cut.automatic) writer("segment", Division::automatic, divisions);
+        if (!chosen.whole && chosen.segments == 0) writer("segment-length", chosen.length);
+        if (!chosen.whole && chosen.segments > 0) writer("segments", chosen.segments);
+        if (chosen.overlap > 0) writer("overlap", chosen.overlap);
+        if (chosen.cheapest) writer("segment", Division::cheapest, divisions);
         return writer.text();
       },
       step.method);

@@ -132,7 +132,7 @@ Recording selected(const Recording& clip, const FrameSpan& frames, const GridTak
     throw FileError(config, take.line,
                     fmt::format("frames {}:{} do not fit {}, which has {} frames", first, last,
                                 take.file.string(), clip.frames()));
-  return cut(clip, first, last);
+  return excerpt(clip, first, last);
 }
 
 ExperimentTake read_take(const GridTake& take, const FrameSpan& frames, const fs::path& config) {

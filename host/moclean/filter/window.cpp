@@ -25,12 +25,12 @@ void require_odd(std::string_view filter, Index window) {
 void weighted_mean(const std::vector<double>& weights, std::span<double> channel) {
   const std::vector<double> y(channel.begin(), channel.end());
   const auto frames = static_cast<Index>(y.size());
-  const auto reach = static_cast<Index>(weights.size()) - 1;
+  const auto half = static_cast<Index>(weights.size()) - 1;
   for (Index i = 0; i < frames; ++i) {
     double& result = channel[static_cast<std::size_t>(i)];
     if (std::isnan(result)) continue;
     double sum = 0, weight = 0;
-    for (Index j = std::max<Index>(0, i - reach); j <= std::min(frames - 1, i + reach); ++j) {
+    for (Index j = std::max<Index>(0, i - half); j <= std::min(frames - 1, i + half); ++j) {
       const double w = weights[static_cast<std::size_t>(std::abs(i - j))];
       const double x = y[static_cast<std::size_t>(j)];
       if (std::isnan(x)) continue;
@@ -45,13 +45,13 @@ void weighted_mean(const std::vector<double>& weights, std::span<double> channel
 // them.
 template <class Replace>
 void replace_each(const std::vector<double>& y, std::size_t begin, std::size_t end,
-                  std::size_t reach, std::span<double> channel, const Replace& replace) {
+                  std::size_t half, std::span<double> channel, const Replace& replace) {
   SortedWindow sorted;
-  const std::size_t first = begin < reach ? 0 : begin - reach;
-  for (std::size_t i = first; i < std::min(begin + reach, y.size()); ++i) sorted.insert(y[i]);
+  const std::size_t first = begin < half ? 0 : begin - half;
+  for (std::size_t i = first; i < std::min(begin + half, y.size()); ++i) sorted.insert(y[i]);
   for (std::size_t i = begin; i < end; ++i) {
-    if (i + reach < y.size()) sorted.insert(y[i + reach]);
-    if (i > begin && i > reach) sorted.remove(y[i - reach - 1]);
+    if (i + half < y.size()) sorted.insert(y[i + half]);
+    if (i > begin && i > half) sorted.remove(y[i - half - 1]);
     if (!std::isnan(y[i])) replace(channel[i], sorted);
   }
 }
@@ -101,18 +101,18 @@ template <class Replace, class ReplaceBlock>
 void for_each_window(Index window, std::span<double> channel, const Replace& replace,
                      const ReplaceBlock& replace_block) {
   const std::vector<double> y(channel.begin(), channel.end());
-  const auto length = static_cast<std::size_t>(window), reach = length / 2;
+  const auto length = static_cast<std::size_t>(window), half = length / 2;
   const bool complete = std::ranges::none_of(y, [](double x) { return std::isnan(x); });
   std::size_t i = 0;
-  if (complete && window <= WindowBlock::largest_window && y.size() > 2 * reach) {
+  if (complete && window <= WindowBlock::largest_window && y.size() > 2 * half) {
     constexpr auto width = static_cast<std::size_t>(WindowBlock::width);
-    replace_each(y, 0, reach, reach, channel, replace);
-    for (i = reach; i + width + reach <= y.size(); i += width) {
-      WindowBlock block(y.data() + i - reach, length);
+    replace_each(y, 0, half, half, channel, replace);
+    for (i = half; i + width + half <= y.size(); i += width) {
+      WindowBlock block(y.data() + i - half, length);
       replace_block(channel.subspan(i, width), block);
     }
   }
-  replace_each(y, i, y.size(), reach, channel, replace);
+  replace_each(y, i, y.size(), half, channel, replace);
 }
 
 }  // namespace

@@ -26,9 +26,9 @@ std::vector<fs::path> skeletons_in(const fs::path& folder) {
 // The stem and what is left of it when it is cut at each `_`, longest first.
 std::vector<std::string> candidate_stems(std::string stem) {
   std::vector<std::string> stems = {stem};
-  for (std::size_t cut = stem.rfind('_'); cut != std::string::npos && cut > 0;
-       cut = stem.rfind('_', cut - 1))
-    stems.push_back(stem.substr(0, cut));
+  for (std::size_t end = stem.rfind('_'); end != std::string::npos && end > 0;
+       end = stem.rfind('_', end - 1))
+    stems.push_back(stem.substr(0, end));
   return stems;
 }
 

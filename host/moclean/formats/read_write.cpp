@@ -38,7 +38,7 @@ Recording select_frames(const Recording& recording, const FrameRange& frames,
     throw ArgumentError(fmt::format("--frames {}:{} is out of range: {} has {} frames", first,
                                     frames.last ? std::to_string(last) : "", file.string(),
                                     recording.frames()));
-  return cut(recording, first, last);
+  return excerpt(recording, first, last);
 }
 
 void write_recording(const std::filesystem::path& file, const Recording& recording) {

@@ -61,13 +61,14 @@ void fill_parameter_table(const Device& device) {
   });
 }
 
+template <class Real>
 void gemm(const Device& device, Transpose left_form, Transpose right_form, const Sizes& sizes,
-          const Offsets& offsets, const Buffer<double>& left, const Buffer<double>& right,
-          Buffer<double>& result) {
+          const Offsets& offsets, const Buffer<Real>& left, const Buffer<Real>& right,
+          Buffer<Real>& result) {
   const std::size_t count = offsets.left.size();
-  const std::vector<double> one(count, 1), zero(count, 0);
+  const std::vector<Real> one(count, 1), zero(count, 0);
   cl_command_queue queue = device.queue()();
-  const auto status = clblast::GemmBatched<double>(
+  const auto status = clblast::GemmBatched<Real>(
       clblast::Layout::kRowMajor, left_form, right_form, sizes.m, sizes.n, sizes.k, one.data(),
       left.memory()(), offsets.left.data(), sizes.left_pitch, right.memory()(),
       offsets.right.data(), sizes.right_pitch, zero.data(), result.memory()(),
@@ -85,8 +86,9 @@ std::size_t square_offset(const SegmentRecord& segment) {
 }
 
 // XM, or X op(M) with the given form, for a tall segment; always MX for a wide one.
-void multiply(const Device& device, const Batch& batch, const Buffer<double>& x,
-              const Buffer<double>& m, Transpose tall_form, Buffer<double>& result) {
+template <class Real>
+void multiply(const Device& device, const Batch& batch, const Buffer<Real>& x,
+              const Buffer<Real>& m, Transpose tall_form, Buffer<Real>& result) {
   const auto groups = group_by_shape(batch, [](const SegmentRecord& s) {
     return s.wide() ? std::tuple(square_offset(s), stacked_offset(s), stacked_offset(s))
                     : std::tuple(stacked_offset(s), square_offset(s), stacked_offset(s));
@@ -107,8 +109,9 @@ void multiply(const Device& device, const Batch& batch, const Buffer<double>& x,
 }
 
 // C = op(P) Z of the square matrices.
-void square_product(const Device& device, const Batch& batch, Transpose form,
-                    const Buffer<double>& p, const Buffer<double>& z, Buffer<double>& c) {
+template <class Real>
+void square_product(const Device& device, const Batch& batch, Transpose form, const Buffer<Real>& p,
+                    const Buffer<Real>& z, Buffer<Real>& c) {
   const auto groups = group_by_shape(batch, [](const SegmentRecord& s) {
     return std::tuple(square_offset(s), square_offset(s), square_offset(s));
   });
@@ -122,14 +125,17 @@ void square_product(const Device& device, const Batch& batch, Transpose form,
 
 }  // namespace
 
-ClblastProducts::ClblastProducts(const Device& device)
+template <class Real>
+ClblastProducts<Real>::ClblastProducts(const Device& device)
     : device_(&device),
-      program_(device, kernel_source::scale_rows, common_defines(device)),
+      program_(device, kernel_source::scale_rows, common_defines(device, number_type<Real>)),
       scale_rows_(program_, "scale_rows") {
   fill_parameter_table(device);
 }
 
-void ClblastProducts::gram(const Batch& batch, const Buffer<double>& x, Buffer<double>& g, GramOf) {
+template <class Real>
+void ClblastProducts<Real>::gram(const Batch& batch, const Buffer<Real>& x, Buffer<Real>& g,
+                                 GramOf) {
   const auto groups = group_by_shape(batch, [](const SegmentRecord& s) {
     return std::tuple(stacked_offset(s), stacked_offset(s), square_offset(s));
   });
@@ -145,9 +151,10 @@ void ClblastProducts::gram(const Batch& batch, const Buffer<double>& x, Buffer<d
   }
 }
 
-void ClblastProducts::reconstruct(const Batch& batch, const Buffer<double>& z,
-                                  const Buffer<double>& f, const Buffer<std::int32_t>&,
-                                  Buffer<double>& w) {
+template <class Real>
+void ClblastProducts<Real>::reconstruct(const Batch& batch, const Buffer<Real>& z,
+                                        const Buffer<Real>& f, const Buffer<std::int32_t>&,
+                                        Buffer<Real>& w) {
   grow(scaled_, *device_, batch.square_size());
   const Grid rows{.x = static_cast<std::size_t>(batch.largest_order_pitch()),
                   .y = static_cast<std::size_t>(batch.active_count())};
@@ -155,19 +162,25 @@ void ClblastProducts::reconstruct(const Batch& batch, const Buffer<double>& z,
   square_product(*device_, batch, Transpose::kYes, scaled_, z, w);
 }
 
-void ClblastProducts::apply(const Batch& batch, const Buffer<double>& x, const Buffer<double>& w,
-                            Buffer<double>& a) {
+template <class Real>
+void ClblastProducts<Real>::apply(const Batch& batch, const Buffer<Real>& x, const Buffer<Real>& w,
+                                  Buffer<Real>& a) {
   multiply(*device_, batch, x, w, Transpose::kNo, a);
 }
 
-void ClblastProducts::rotate(const Batch& batch, const Buffer<double>& x, const Buffer<double>& z,
-                             Buffer<double>& b) {
+template <class Real>
+void ClblastProducts<Real>::rotate(const Batch& batch, const Buffer<Real>& x, const Buffer<Real>& z,
+                                   Buffer<Real>& b) {
   multiply(*device_, batch, x, z, Transpose::kYes, b);
 }
 
-void ClblastProducts::compose(const Batch& batch, const Buffer<double>& p, const Buffer<double>& z,
-                              Buffer<double>& c) {
+template <class Real>
+void ClblastProducts<Real>::compose(const Batch& batch, const Buffer<Real>& p,
+                                    const Buffer<Real>& z, Buffer<Real>& c) {
   square_product(*device_, batch, Transpose::kNo, p, z, c);
 }
+
+template class ClblastProducts<double>;
+template class ClblastProducts<float>;
 
 }  // namespace moclean

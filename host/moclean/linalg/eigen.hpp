@@ -59,7 +59,7 @@ class SymmetricEigen {
   const Device* device_;
   EigenFlags flags_;
   int vector_width_, panel_;
-  Program tridiagonal_, ql_, eigenvectors_;
+  Program program_;
   Kernel tridiagonalise_, diagonalise_, transform_;
   Buffer<double> reflectors_, d_, e_, scales_, scratch_, lanes_, rotations_;
   Buffer<std::int32_t> sweeps_, sweep_counts_, places_;

@@ -5,7 +5,7 @@ namespace {
 
 std::variant<SymmetricEigen, GroupEigen> make_solver(const Device& device, const Tuning& tuning,
                                                      double negligible) {
-  if (tuning.eigen == EigenForm::group) return GroupEigen(device);
+  if (tuning.eigen == KernelForm::gpu) return GroupEigen(device);
   return SymmetricEigen(device, tuning.panel, negligible);
 }
 

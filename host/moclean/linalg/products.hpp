@@ -12,20 +12,17 @@ Defines product_defines(const Device& device, NumberType type = NumberType::floa
                         const Tuning& tuning = {});
 
 /// Products of our own kernels in the CPU form (kernels/products.cl).
+template <class Real = double>
 class OwnProducts {
  public:
   explicit OwnProducts(const Device& device, const Tuning& tuning = {});
 
-  void gram(const Batch& batch, const Buffer<double>& x, Buffer<double>& g,
-            GramOf which = GramOf::all);
-  void reconstruct(const Batch& batch, const Buffer<double>& z, const Buffer<double>& f,
-                   const Buffer<std::int32_t>& terms, Buffer<double>& w);
-  void apply(const Batch& batch, const Buffer<double>& x, const Buffer<double>& w,
-             Buffer<double>& a);
-  void rotate(const Batch& batch, const Buffer<double>& x, const Buffer<double>& z,
-              Buffer<double>& b);
-  void compose(const Batch& batch, const Buffer<double>& p, const Buffer<double>& z,
-               Buffer<double>& c);
+  void gram(const Batch& batch, const Buffer<Real>& x, Buffer<Real>& g, GramOf which = GramOf::all);
+  void reconstruct(const Batch& batch, const Buffer<Real>& z, const Buffer<Real>& f,
+                   const Buffer<std::int32_t>& terms, Buffer<Real>& w);
+  void apply(const Batch& batch, const Buffer<Real>& x, const Buffer<Real>& w, Buffer<Real>& a);
+  void rotate(const Batch& batch, const Buffer<Real>& x, const Buffer<Real>& z, Buffer<Real>& b);
+  void compose(const Batch& batch, const Buffer<Real>& p, const Buffer<Real>& z, Buffer<Real>& c);
 
  private:
   Grid square_tiles(const Batch& batch) const;
@@ -34,30 +31,27 @@ class OwnProducts {
   std::size_t tile_rows_, tile_columns_;
   Program program_;
   Kernel gram_, reconstruct_, apply_, compose_, basis_;
-  Buffer<double> basis_matrices_;
+  Buffer<Real> basis_matrices_;
 };
 
 /// Products of CLBlast: one batched call per group of segments of equal shape.
+template <class Real = double>
 class ClblastProducts {
  public:
   explicit ClblastProducts(const Device& device);
 
-  void gram(const Batch& batch, const Buffer<double>& x, Buffer<double>& g,
-            GramOf which = GramOf::all);
-  void reconstruct(const Batch& batch, const Buffer<double>& z, const Buffer<double>& f,
-                   const Buffer<std::int32_t>& terms, Buffer<double>& w);
-  void apply(const Batch& batch, const Buffer<double>& x, const Buffer<double>& w,
-             Buffer<double>& a);
-  void rotate(const Batch& batch, const Buffer<double>& x, const Buffer<double>& z,
-              Buffer<double>& b);
-  void compose(const Batch& batch, const Buffer<double>& p, const Buffer<double>& z,
-               Buffer<double>& c);
+  void gram(const Batch& batch, const Buffer<Real>& x, Buffer<Real>& g, GramOf which = GramOf::all);
+  void reconstruct(const Batch& batch, const Buffer<Real>& z, const Buffer<Real>& f,
+                   const Buffer<std::int32_t>& terms, Buffer<Real>& w);
+  void apply(const Batch& batch, const Buffer<Real>& x, const Buffer<Real>& w, Buffer<Real>& a);
+  void rotate(const Batch& batch, const Buffer<Real>& x, const Buffer<Real>& z, Buffer<Real>& b);
+  void compose(const Batch& batch, const Buffer<Real>& p, const Buffer<Real>& z, Buffer<Real>& c);
 
  private:
   const Device* device_;
   Program program_;
   Kernel scale_rows_;
-  Buffer<double> scaled_;
+  Buffer<Real> scaled_;
 };
 
 /// The products of an iteration, for the active segments of a batch. X, A and B are stacked
@@ -68,25 +62,23 @@ class ClblastProducts {
 ///   apply        A = XW (WX for a wide segment)
 ///   rotate       B = XZ' (ZX for a wide segment): X expressed in the rows of Z
 ///   compose      C = PZ
-/// All are enqueued, none waits. The result for a segment does not depend on its neighbours.
+/// All are enqueued, none waits. The result for a segment does not depend on its neighbours. Real
+/// is double or float, of the matrices and of the sums.
+template <class Real = double>
 class Products {
  public:
   /// Those that `tuning` asks for by its `products` and, of our own, its `form`.
   explicit Products(const Device& device, const Tuning& tuning = {});
 
-  void gram(const Batch& batch, const Buffer<double>& x, Buffer<double>& g,
-            GramOf which = GramOf::all);
-  void reconstruct(const Batch& batch, const Buffer<double>& z, const Buffer<double>& f,
-                   const Buffer<std::int32_t>& terms, Buffer<double>& w);
-  void apply(const Batch& batch, const Buffer<double>& x, const Buffer<double>& w,
-             Buffer<double>& a);
-  void rotate(const Batch& batch, const Buffer<double>& x, const Buffer<double>& z,
-              Buffer<double>& b);
-  void compose(const Batch& batch, const Buffer<double>& p, const Buffer<double>& z,
-               Buffer<double>& c);
+  void gram(const Batch& batch, const Buffer<Real>& x, Buffer<Real>& g, GramOf which = GramOf::all);
+  void reconstruct(const Batch& batch, const Buffer<Real>& z, const Buffer<Real>& f,
+                   const Buffer<std::int32_t>& terms, Buffer<Real>& w);
+  void apply(const Batch& batch, const Buffer<Real>& x, const Buffer<Real>& w, Buffer<Real>& a);
+  void rotate(const Batch& batch, const Buffer<Real>& x, const Buffer<Real>& z, Buffer<Real>& b);
+  void compose(const Batch& batch, const Buffer<Real>& p, const Buffer<Real>& z, Buffer<Real>& c);
 
  private:
-  std::variant<OwnProducts, ClblastProducts, GroupProducts> products_;
+  std::variant<OwnProducts<Real>, ClblastProducts<Real>, GroupProducts<Real>> products_;
 };
 
 }  // namespace moclean

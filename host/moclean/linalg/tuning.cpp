@@ -38,14 +38,6 @@ ProductPath parse_product_path(const std::string& text) {
   throw ArgumentError("products are own or those of clblast, not '" + text + "'");
 }
 
-std::string to_string(EigenForm form) { return form == EigenForm::lanes ? "lanes" : "group"; }
-
-EigenForm parse_eigen_form(const std::string& text) {
-  if (text == "lanes") return EigenForm::lanes;
-  if (text == "group") return EigenForm::group;
-  throw ArgumentError("the eigensolver's form is lanes or group, not '" + text + "'");
-}
-
 void check(const Tuning& tuning) {
   require("tile_rows", tuning.tile_rows, 1, 16);
   require("tile_vectors", tuning.tile_vectors, 1, 8);
@@ -58,7 +50,7 @@ void check(const Tuning& tuning) {
 
 Tuning default_tuning(const DeviceInfo& device) {
   if (device.kind == DeviceKind::gpu)
-    return {.form = KernelForm::gpu, .work_group = 64, .eigen = EigenForm::group};
+    return {.form = KernelForm::gpu, .work_group = 64, .eigen = KernelForm::gpu};
   if (device.kind != DeviceKind::cpu) return {};
   return {.queues = std::clamp(device.compute_units, 1, most_default_queues)};
 }

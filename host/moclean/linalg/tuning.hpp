@@ -24,15 +24,6 @@ std::string to_string(ProductPath path);
 /// Reads `own` or `clblast`; throws ArgumentError for anything else.
 ProductPath parse_product_path(const std::string& text);
 
-/// How the eigensolver divides its work: matrices in the lanes of vectors (SymmetricEigen), or a
-/// work-group per matrix (GroupEigen).
-enum class EigenForm { lanes, group };
-
-std::string to_string(EigenForm form);
-
-/// Reads `lanes` or `group`; throws ArgumentError for anything else.
-EigenForm parse_eigen_form(const std::string& text);
-
 /// Choices that make the solver faster or slower on a device. The defaults are those of a CPU.
 ///
 /// tile_rows, tile_vectors, sweep_rows, panel, work_group, batch_segments and queues leave every
@@ -45,7 +36,7 @@ struct Tuning {
   /// Rows from the product A = XW of a sweep to their part of the Gram matrix, 1 .. 256: with the
   /// columns of W, 32 rows fill a first-level cache of 32 KiB.
   int sweep_rows = 32;
-  /// Vectors of columns of the eigenvectors that one work-item transforms (lanes only), 1 .. 16:
+  /// Vectors of columns of the eigenvectors that one work-item transforms (CPU form only), 1 .. 16:
   /// 4 x 8 columns of 93 rows fill three quarters of that cache.
   int panel = 4;
   KernelForm form = KernelForm::cpu;
@@ -53,7 +44,9 @@ struct Tuning {
   /// Work-items of a work-group of the GPU form, 16 .. 256: rounded down to a power of two and to
   /// what the device can run.
   int work_group = 256;
-  EigenForm eigen = EigenForm::lanes;
+  /// Of the eigensolver: matrices in the lanes of vectors (SymmetricEigen), or a work-group per
+  /// matrix (GroupEigen).
+  KernelForm eigen = KernelForm::cpu;
   /// Most segments of a batch, as far as they fit the memory; 0: as many as suit the device's
   /// memory and, on a CPU, its cache.
   std::int64_t batch_segments = 0;
@@ -74,7 +67,7 @@ Tuning default_tuning(const DeviceInfo& device);
 /// form of the eigensolver.
 bool same_bits(const Tuning& a, const Tuning& b);
 
-/// One line: `tile 8 x 3, sweep 32 rows, panel 4, form cpu, products own, eigensolver lanes, batch
+/// One line: `tile 8 x 3, sweep 32 rows, panel 4, form cpu, products own, eigensolver cpu, batch
 /// any, queues 2`.
 std::string to_string(const Tuning& tuning);
 

@@ -28,9 +28,10 @@ std::vector<T> host_copy(const Buffer<T>& buffer) {
 Work gram_work(const SegmentRecord& segment, std::size_t bytes_per_real = sizeof(double));
 
 /// A product of X with a square matrix from one side.
-Work apply_work(const SegmentRecord& segment);
+Work apply_work(const SegmentRecord& segment, std::size_t bytes_per_real = sizeof(double));
 
 /// W = sum of `terms` weighted outer products.
-Work outer_products_work(const SegmentRecord& segment, int terms);
+Work outer_products_work(const SegmentRecord& segment, int terms,
+                         std::size_t bytes_per_real = sizeof(double));
 
 }  // namespace moclean

@@ -87,7 +87,7 @@ std::vector<std::string> default_column_names(Index count) {
   return names;
 }
 
-Recording cut(const Recording& recording, Index first, Index last) {
+Recording excerpt(const Recording& recording, Index first, Index last) {
   if (first < 0 || first >= last || last > recording.frames())
     throw ShapeError(fmt::format("cannot cut frames {}:{} out of a take of {} frames", first, last,
                                  recording.frames()));

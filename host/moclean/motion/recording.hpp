@@ -57,7 +57,7 @@ std::vector<std::string> default_column_names(Index count);
 
 /// The frames [first, last) with all that is known of them. Throws ShapeError unless 0 <= first <
 /// last <= frames.
-Recording cut(const Recording& recording, Index first, Index last);
+Recording excerpt(const Recording& recording, Index first, Index last);
 
 /// Every so many frames, from the first, at a rate that is as much lower; `every` is at least 1.
 Recording thinned(const Recording& recording, Index every);

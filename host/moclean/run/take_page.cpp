@@ -19,7 +19,7 @@ std::string frames_text(const FrameRange& range) {
 
 std::string segmentation_text(const Segmentation& segmentation) {
   if (segmentation.whole) return "the whole take";
-  const char* how = segmentation.automatic ? "automatic" : "equal";
+  const char* how = segmentation.cheapest ? "automatic" : "equal";
   const std::string text =
       segmentation.segments > 0
           ? fmt::format("{} {} segments", segmentation.segments, how)

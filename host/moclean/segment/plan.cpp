@@ -26,11 +26,11 @@ SegmentPlan equal_segments(Index frames, Index segments) {
   const Index part = frames % segments;
   SegmentPlan plan = {0};
   plan.reserve(static_cast<std::size_t>(segments) + 1);
-  Index carried = 0;
+  Index remainder = 0;
   for (Index s = 0; s < segments; ++s) {
-    carried += part;
-    const bool full = carried >= segments;
-    if (full) carried -= segments;
+    remainder += part;
+    const bool full = remainder >= segments;
+    if (full) remainder -= segments;
     plan.push_back(plan.back() + whole + (full ? 1 : 0));
   }
   return plan;

@@ -45,7 +45,7 @@ class MatrixNormalSolver {
 
   const Device& device_;
   int jobs_;
-  Products products_;
+  Products<double> products_;
   Eigensolver eigen_;
   ConjugateGradients gradients_;
 };

@@ -72,7 +72,7 @@ ConjugateGradients::Memory ConjugateGradients::memory(MemoryLayout& of) const {
   return {of, groups_ ? KernelForm::gpu : KernelForm::cpu, vector_width(device_)};
 }
 
-void ConjugateGradients::operator()(const Batch& batch, Memory& m, Products& products,
+void ConjugateGradients::operator()(const Batch& batch, Memory& m, Products<double>& products,
                                     int most_iterations, double tolerance) {
   const Grid columns = per_column(batch, device_, NumberType::float64);
   const auto search = [&](const Buffer<double>& z, double until, bool begins) {
@@ -105,7 +105,7 @@ void ConjugateGradients::search_in_tiles(const Batch& batch, Memory& m, const Bu
 }
 
 // The product is also that of segments which are left as they are; nothing reads theirs.
-void ConjugateGradients::search_in_groups(const Batch& batch, Memory& m, Products& products,
+void ConjugateGradients::search_in_groups(const Batch& batch, Memory& m, Products<double>& products,
                                           const Buffer<double>& z, double tolerance, bool begins) {
   const Grid grid = group_per_block(batch, work_group_);
   groups_->differences(grid, batch.device_segments(), batch.device_blocks(), batch.active_blocks(),

@@ -37,7 +37,7 @@ class ConjugateGradients {
   /// From m.S on to m.S: at most `most_iterations`, of each segment until the square of its
   /// gradient, as the preconditioner measures it, is `tolerance`^2 of that at S = 0. Work-groups
   /// leave the product with R to `products`.
-  void operator()(const Batch& batch, Memory& m, Products& products, int most_iterations,
+  void operator()(const Batch& batch, Memory& m, Products<double>& products, int most_iterations,
                   double tolerance);
 
  private:
@@ -60,8 +60,8 @@ class ConjugateGradients {
 
   void search_in_tiles(const Batch& batch, Memory& m, const Buffer<double>& z, double tolerance,
                        bool begins);
-  void search_in_groups(const Batch& batch, Memory& m, Products& products, const Buffer<double>& z,
-                        double tolerance, bool begins);
+  void search_in_groups(const Batch& batch, Memory& m, Products<double>& products,
+                        const Buffer<double>& z, double tolerance, bool begins);
 
   const Device& device_;
   Program program_;

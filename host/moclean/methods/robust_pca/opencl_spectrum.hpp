@@ -60,7 +60,7 @@ class RobustPcaSpectrum {
   void sum_partial_grams(const Batch& batch, Memory& m, Buffer<double>& g);
   void threshold(const Batch& batch, Memory& m, const Iteration& now);
 
-  Products products_;
+  Products<double> products_;
   Eigensolver eigen_;
   std::optional<GramKernels> grams_;  // where an iteration may be one sweep
   Kernel threshold_;

@@ -44,7 +44,7 @@ class SpectralSolver {
              Solution& solution, const Finished& finished, const std::stop_token& stop);
 
   const Device& device_;
-  Products products_;
+  Products<double> products_;
   Eigensolver eigen_;
 };
 

@@ -47,7 +47,7 @@ class SoftThreshold {
  private:
   void find_values(const Batch& batch, const Buffer<double>& x, Memory& m);
 
-  Products products_;
+  Products<double> products_;
   Eigensolver eigen_;
 };
 

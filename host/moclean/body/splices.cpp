@@ -1,4 +1,4 @@
-#include "moclean/body/cuts.hpp"
+#include "moclean/body/splices.hpp"
 
 #include <algorithm>
 
@@ -9,14 +9,14 @@ constexpr double moved_share = 0.3, whole_share = 0.8;
 
 }  // namespace
 
-std::vector<Index> cuts(const Mask& trusted, std::span<const SuddenSteps> steps,
-                        const RigidBody& body, const Mask& jumps) {
-  std::vector<Index> judged;
-  for (std::size_t j = 0; j < body.judged.size(); ++j)
-    if (body.judged[j]) judged.push_back(static_cast<Index>(j));
+std::vector<Index> splices(const Mask& trusted, std::span<const SuddenSteps> steps,
+                           const RigidBody& body, const Mask& jumps) {
+  std::vector<Index> testable;
+  for (std::size_t j = 0; j < body.testable.size(); ++j)
+    if (body.testable[j]) testable.push_back(static_cast<Index>(j));
   const auto share = [&](const auto& holds) {
-    const auto count = std::ranges::count_if(judged, holds);
-    return static_cast<double>(count) / static_cast<double>(judged.size());
+    const auto count = std::ranges::count_if(testable, holds);
+    return static_cast<double>(count) / static_cast<double>(testable.size());
   };
   const auto is_whole = [&](Index frame) {
     return share([&](Index j) { return trusted(frame, j); }) >= whole_share;
@@ -29,7 +29,7 @@ std::vector<Index> cuts(const Mask& trusted, std::span<const SuddenSteps> steps,
            }) >= moved_share;
   };
   std::vector<Index> found;
-  if (judged.empty()) return found;
+  if (testable.empty()) return found;
   for (Index step = 0; step + 1 < trusted.rows(); ++step) {
     if (!has_moved(step)) continue;
     const Index before = step;

@@ -1,4 +1,4 @@
-#include "moclean/body/carried.hpp"
+#include "moclean/body/rigid_gap_fill.hpp"
 
 namespace moclean {
 namespace {
@@ -18,10 +18,10 @@ Matrix blended(const Gap& gap, const Frames& frames, const FromEdge& from_edge) 
 
 }  // namespace
 
-Matrix carried(const BodyTake& take, const Neighbours& neighbours, const Gap& gap,
-               const Frames& frames) {
+Matrix rigid_gap_fill(const BodyTake& take, const Neighbours& neighbours, const Gap& gap,
+                      const Frames& frames) {
   return blended(gap, frames, [&](Index edge, Index frame) {
-    return rigid_motion(take, neighbours, edge, frame).carried(take.position(edge, gap.joint));
+    return rigid_motion(take, neighbours, edge, frame).moved(take.position(edge, gap.joint));
   });
 }
 

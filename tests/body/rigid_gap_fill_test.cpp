@@ -1,5 +1,5 @@
 // Joints carried through gaps by their neighbours.
-#include "moclean/body/carried.hpp"
+#include "moclean/body/rigid_gap_fill.hpp"
 
 #include <gtest/gtest.h>
 
@@ -22,12 +22,12 @@ TEST(RigidMotion, IsThatOfARigidBody) {
   Eigen::Matrix3d turn;
   turn << 0, -1, 0, 1, 0, 0, 0, 0, 1;
   EXPECT_LE((motion.rotation - turn).norm(), 1e-12);
-  EXPECT_LE((motion.carried({1, 1, 3}) - Eigen::RowVector3d(9, 1, 3)).norm(), 1e-12);
-  EXPECT_LE((motion.carried_back({9, 1, 3}) - Eigen::RowVector3d(1, 1, 3)).norm(), 1e-12);
+  EXPECT_LE((motion.moved({1, 1, 3}) - Eigen::RowVector3d(9, 1, 3)).norm(), 1e-12);
+  EXPECT_LE((motion.moved_back({9, 1, 3}) - Eigen::RowVector3d(1, 1, 3)).norm(), 1e-12);
 }
 
-TEST(Carried, GoesAlongFromTheOneEdge) {
-  const Matrix found = carried(quarter_turn(), three, {3, 1, 2, true, false}, {1});
+TEST(RigidGapFill, GoesAlongFromTheOneEdge) {
+  const Matrix found = rigid_gap_fill(quarter_turn(), three, {3, 1, 2, true, false}, {1});
 
   EXPECT_LE((found - Eigen::RowVector3d(9, 1, 3)).norm(), 1e-12);
 }

@@ -1,4 +1,4 @@
-#include "moclean/segment/automatic.hpp"
+#include "moclean/segment/cheapest_plan.hpp"
 
 #include <algorithm>
 #include <cmath>

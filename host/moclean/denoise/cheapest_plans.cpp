@@ -1,10 +1,10 @@
-#include "moclean/denoise/automatic_plan.hpp"
+#include "moclean/denoise/cheapest_plans.hpp"
 
 #include <algorithm>
 #include <map>
 
 #include "moclean/filter/filter.hpp"
-#include "moclean/segment/automatic.hpp"
+#include "moclean/segment/cheapest_plan.hpp"
 
 namespace moclean {
 namespace {
@@ -66,9 +66,9 @@ std::vector<double> costs_in_batches(std::span<const Candidate> candidates, Inde
 
 }  // namespace
 
-std::vector<SegmentPlan> automatic_plans(std::span<const Recording> takes,
-                                         std::span<const Index> segments, RobustPca method,
-                                         Backend& backend, const std::stop_token& stop) {
+std::vector<SegmentPlan> cheapest_plans(std::span<const Recording> takes,
+                                        std::span<const Index> segments, RobustPca method,
+                                        Backend& backend, const std::stop_token& stop) {
   method.tolerance = std::max(method.tolerance, coarse_tolerance);
   std::vector<SegmentPlan> plans;
   std::vector<Matrix> medians(takes.size());

@@ -1,4 +1,4 @@
-#include "moclean/denoise/automatic_plan.hpp"
+#include "moclean/denoise/cheapest_plans.hpp"
 
 #include <cmath>
 
@@ -9,7 +9,7 @@
 #include "moclean/denoise/low_rank.hpp"
 #include "moclean/metric/metric.hpp"
 #include "moclean/noise/noise.hpp"
-#include "moclean/segment/automatic.hpp"
+#include "moclean/segment/cheapest_plan.hpp"
 
 #include "support/matrix.hpp"
 
@@ -46,7 +46,7 @@ Recording noisy(const Recording& take) {
 std::vector<SegmentPlan> plans_of(const std::vector<Recording>& takes,
                                   std::vector<Index> segments) {
   ReferenceBackend backend(2);
-  return automatic_plans(takes, segments, RobustPca{}, backend);
+  return cheapest_plans(takes, segments, RobustPca{}, backend);
 }
 
 TEST(AutomaticPlans, CutWhereTheMotionChanges) {
@@ -84,7 +84,7 @@ TEST(AutomaticPlans, StopWhenAsked) {
   const std::vector<Index> segments = {3};
   ReferenceBackend backend(1);
 
-  EXPECT_THROW(automatic_plans(takes, segments, {}, backend, stop.get_token()), Cancelled);
+  EXPECT_THROW(cheapest_plans(takes, segments, {}, backend, stop.get_token()), Cancelled);
 }
 
 TEST(AutomaticSegments, BringSlraCloserToTheTruthThanEqualOnes) {
@@ -98,7 +98,7 @@ TEST(AutomaticSegments, BringSlraCloserToTheTruthThanEqualOnes) {
     return frobenius_distance(truth.samples, result.motion);
   };
 
-  EXPECT_LT(fd({.segments = 3, .automatic = true}), 0.9 * fd({.segments = 3}));
+  EXPECT_LT(fd({.segments = 3, .cheapest = true}), 0.9 * fd({.segments = 3}));
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace moclean {
 /// In a step, or a run of neighbouring ones, 30 % of the joints with a hard edge take sudden steps
 /// that `jumps`, the jump_flags(), do not explain; before and after it 80 % of those joints are
 /// `trusted` [frames x joints]. `steps` is [joints].
-std::vector<Index> cuts(const Mask& trusted, std::span<const SuddenSteps> steps,
-                        const RigidBody& body, const Mask& jumps);
+std::vector<Index> splices(const Mask& trusted, std::span<const SuddenSteps> steps,
+                           const RigidBody& body, const Mask& jumps);
 
 }  // namespace moclean
