@@ -168,13 +168,6 @@ INLINE void project(const chunk_t c, global const real* v, global const real* f,
       project_tile(c, v, f, projected, order, row, column, 1);
 }
 
-// Where the Gram matrix of a block is summed up: [order x order].
-INLINE global real* gram_of(const block_t block, const segment_t s, global real* g,
-                            global real* partial_grams) {
-  if (block.block == 0) return g + s.square;
-  return partial_grams + s.partial + (block.block - 1) * (size_t)s.order * s.order_pitch;
-}
-
 // A = XW.
 kernel void sweep_full(global const segment_t* segments,  // [segments]
                        global const block_t* blocks,      // [block_count]

@@ -16,7 +16,7 @@ extern const std::string_view sweep_group;
 extern const std::string_view completion;
 extern const std::string_view banded;
 extern const std::string_view conjugate_gradients;
-extern const std::string_view grams;
+extern const std::string_view partial_grams;
 extern const std::string_view norms;
 extern const std::string_view norms_group;
 extern const std::string_view peak;

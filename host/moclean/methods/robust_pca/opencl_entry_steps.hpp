@@ -8,7 +8,8 @@
 
 namespace moclean::opencl {
 
-/// -D options of the programs that go over chunks of rows (kernels/sweep.cl, kernels/grams.cl).
+/// -D options of the programs that go over chunks of rows (kernels/sweep.cl,
+/// kernels/partial_grams.cl).
 Defines sweep_defines(const Device& device, NumberType type, const Tuning& tuning);
 
 /// What X is multiplied by in A = XW: W itself, or at low rank V diag(f) Z, of all segments.

@@ -8,8 +8,9 @@
 namespace moclean::opencl {
 
 template <class Real>
-RobustPcaSpectrum<Real>::GramKernels::GramKernels(const Device& device, const Tuning& tuning)
-    : program(device, kernel_source::grams, sweep_defines(device, NumberType::float64, tuning)),
+RobustPcaSpectrum<Real>::PartialGrams::PartialGrams(const Device& device, const Tuning& tuning)
+    : program(device, kernel_source::partial_grams,
+              sweep_defines(device, NumberType::float64, tuning)),
       sum(program, "sum_grams"),
       of_floats(program, "gram_of_floats"),
       of_wide_floats(program, "gram_of_wide_floats"),
@@ -22,12 +23,13 @@ RobustPcaSpectrum<Real>::RobustPcaSpectrum(const Device& device, const Tuning& t
       eigen_(device, tuning, mixed ? 1e-8 : 1e-12),  // far below what the iteration makes of it
       threshold_(steps, "threshold") {
   const bool fuses = tuning.form == KernelForm::cpu && tuning.products == ProductPath::own;
-  if (fuses) grams_.emplace(device, tuning);
+  if (fuses) partial_grams_.emplace(device, tuning);
 }
 
 template <class Real>
 IterationSetting RobustPcaSpectrum<Real>::setting(const Memory& m) const {
-  return {.mixed = mixed, .fused = grams_ && !m.missing, .columns = eigen_.leaves_columns()};
+  return {
+      .mixed = mixed, .fused = partial_grams_ && !m.missing, .columns = eigen_.leaves_columns()};
 }
 
 // From the eigenproblem of D'D (DD' for wide segments).
@@ -87,20 +89,21 @@ template <class Real>
 void RobustPcaSpectrum<Real>::gram_of_floats(const Batch& batch, Memory& m,
                                              const Buffer<Real>& wide, bool shifted) {
   if constexpr (mixed) {
-    grams_->of_floats.with([&] { return tall_gram_work(batch, sizeof(Real)); })(
+    partial_grams_->of_floats.with([&] { return tall_gram_work(batch, sizeof(Real)); })(
         per_block(batch), batch.device_segments(), batch.device_blocks(), batch.active_blocks(),
         m.states, m.decompose, cl_int{shifted}, m.D, m.T, m.A, m.widened, m.V, m.partial_grams);
     sum_partial_grams(batch, m, m.V);
     if (batch.has_wide())
-      grams_->of_wide_floats(per_row(batch), batch.device_segments(), batch.device_active(), wide,
-                             m.V);
+      partial_grams_->of_wide_floats(per_row(batch), batch.device_segments(), batch.device_active(),
+                                     wide, m.V);
   }
 }
 
 template <class Real>
 void RobustPcaSpectrum<Real>::sum_partial_grams(const Batch& batch, Memory& m, Buffer<double>& g) {
   if (batch.partial_size() > 0)
-    grams_->sum(per_row(batch), batch.device_segments(), batch.device_active(), m.partial_grams, g);
+    partial_grams_->sum(per_row(batch), batch.device_segments(), batch.device_active(),
+                        m.partial_grams, g);
 }
 
 template <class Real>
@@ -128,8 +131,8 @@ Multiplier<Real> RobustPcaSpectrum<Real>::multiplier(const Batch& batch, Memory&
                                                      const Iteration& now) {
   products_.reconstruct(batch, m.Z, m.f, m.terms, m.W);
   if constexpr (mixed) {
-    grams_->narrow(per_row(batch), batch.device_segments(), batch.device_active(), m.states, m.W,
-                   m.V, m.Z, m.f, m.W_real, m.V_real, m.Z_real, m.f_real);
+    partial_grams_->narrow(per_row(batch), batch.device_segments(), batch.device_active(), m.states,
+                           m.W, m.V, m.Z, m.f, m.W_real, m.V_real, m.Z_real, m.f_real);
     return {m.W_real, m.V_real, m.Z_real, m.f_real, now.low_rank};
   } else {
     return {m.W, m.V, m.Z, m.f, now.low_rank};

@@ -47,9 +47,9 @@ class RobustPcaSpectrum {
  private:
   static constexpr bool mixed = Memory::mixed;
 
-  // Of kernels/grams.cl: what a sweep leaves to be summed, and mixed precision.
-  struct GramKernels {
-    GramKernels(const Device& device, const Tuning& tuning);
+  // Of kernels/partial_grams.cl: what a sweep leaves to be summed, and mixed precision.
+  struct PartialGrams {
+    PartialGrams(const Device& device, const Tuning& tuning);
 
     Program program;
     Kernel sum, of_floats, of_wide_floats, narrow;
@@ -62,7 +62,7 @@ class RobustPcaSpectrum {
 
   Products<double> products_;
   Eigensolver eigen_;
-  std::optional<GramKernels> grams_;  // where an iteration may be one sweep
+  std::optional<PartialGrams> partial_grams_;  // where an iteration may be one sweep
   Kernel threshold_;
 };
 
