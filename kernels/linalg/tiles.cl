@@ -116,6 +116,14 @@ INLINE void gram_tile(global const real* x, global real* g, int begins, const se
   store_tile(&tile, g, s.pitch, row, s.order, column, width);
 }
 
+// Where the Gram matrix of a block is summed up: in G of the segment for its first, else in one of
+// its partial matrices.
+INLINE global real* gram_of(const block_t block, const segment_t s, global real* g,
+                            global real* partial_grams) {
+  if (block.block == 0) return g + s.square;
+  return partial_grams + s.partial + (block.block - 1) * (size_t)s.order * s.order_pitch;
+}
+
 // G += X'X for `rows` rows of X, the tiles that hold a part of the upper triangle; `begins` if they
 // are the first.
 INLINE void add_gram(global const real* x, global real* g, int begins, const segment_t s,

@@ -1,6 +1,6 @@
 // The element-wise steps of robust PCA for entries of type ENTRY, a vector or a number, with
 // scalars of type SCALAR; in the notation of host/moclean/methods/robust_pca/reference.cpp. What
-// sweep.cl, sweep_group.cl and grams.cl share.
+// sweep.cl, sweep_group.cl and partial_grams.cl share.
 //
 // Order ae keeps one matrix between two iterations,
 //   T = mu (D - A) + Y,   from which   Y+ = clamp(T, -lambda, lambda)   and   E = (T - Y+) / mu:

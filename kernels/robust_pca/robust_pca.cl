@@ -87,9 +87,8 @@ kernel void threshold(global const segment_t* segments,  // [segments]
 kernel void advance(global const segment_t* segments,  // [segments]
                     global const int* active,          // [active_count]
                     int active_count,
-                    global const real* partial_squares,  // [all blocks]
-                    global const int* partial_sparse,    // [all blocks]: whether E is not zero
-                    global const real* frobenius,        // [segments]: |D|_F
+                    global const report_t* reports,  // [all blocks]
+                    global const real* frobenius,    // [segments]: |D|_F
                     real rho, real tolerance, int max_iterations,
                     real keep_below,         // A is kept from this residual on
                     int keep_pure,           // 0: no segment counts as pure from now on
@@ -104,8 +103,8 @@ kernel void advance(global const segment_t* segments,  // [segments]
   real squares = 0;
   int sparse = 0;
   for (int b = 0; b < block_count_of(s); ++b) {
-    squares += partial_squares[s.first_block + b];
-    sparse |= partial_sparse[s.first_block + b];
+    squares += reports[s.first_block + b].squares;
+    sparse |= reports[s.first_block + b].sparse;
   }
   state->residual = sqrt(squares) / frobenius[active[item]];
   state->converged = state->residual <= tolerance;

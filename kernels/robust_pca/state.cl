@@ -1,4 +1,5 @@
-// The scalars of robust PCA; prepended to its programs (robust_pca.cl, sweep.cl).
+// The scalars of robust PCA, and what its steps report; prepended to its programs (robust_pca.cl,
+// sweep.cl).
 
 typedef struct {
   double mu;            // of the running iteration
@@ -17,3 +18,9 @@ typedef struct {
   int keep;      // 1: the running iteration stores A, in the last one its A is the result
   int low_rank;  // 1: A = (XV) diag(f) V' takes clearly less work than A = XW
 } state_t;       // mirrors moclean::opencl::SegmentState
+
+// What an iteration reports of a block of rows.
+typedef struct {
+  double squares;  // |D - A - E|_F^2
+  int sparse;      // whether E is not zero; order ae only
+} report_t;        // mirrors moclean::opencl::BlockReport

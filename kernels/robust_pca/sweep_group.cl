@@ -95,8 +95,7 @@ kernel __attribute__((reqd_work_group_size(WG, 1, 1))) void shrink(
     global const real* x,              // X, order ea only
     global const real* a,              // A
     global real* t,                    // T -> T, or Y -> Y+
-    global double* partial_squares,    // [all blocks]: |D - A - E|_F^2
-    global int* partial_sparse) {      // [all blocks]: whether E is not zero; order ae only
+    global report_t* reports) {        // [all blocks]
   local real squares[WG], sparse[WG];
   const int lane = get_local_id(0);
   if ((int)get_group_id(0) >= block_count) return;  // uniform, as all that follow
@@ -129,8 +128,8 @@ kernel __attribute__((reqd_work_group_size(WG, 1, 1))) void shrink(
     sum += squares[i];
     any += sparse[i];
   }
-  partial_squares[part.block] = sum;
-  partial_sparse[part.block] = any > 0;
+  const report_t report = {sum, any > 0};
+  reports[part.block] = report;
 }
 
 kernel __attribute__((reqd_work_group_size(WG, 1, 1))) void finish(

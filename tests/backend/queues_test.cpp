@@ -152,7 +152,7 @@ TEST(Queues, ProfileSeesTheLaunchesOfAll) {
     for (const KernelProfile& kernel : kernels) sum += kernel.seconds;
     EXPECT_GT(profiled.profile()->busy_seconds(), 0);
     EXPECT_LE(profiled.profile()->busy_seconds(), sum * (1 + 1e-9));
-    return std::ranges::find(kernels, "sweep", &KernelProfile::kernel)->calls;
+    return std::ranges::find(kernels, "sweep_full", &KernelProfile::kernel)->calls;
   };
 
   EXPECT_EQ(calls_of_sweep(3), calls_of_sweep(1));

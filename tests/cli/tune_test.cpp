@@ -105,7 +105,7 @@ TEST_F(Tune, ProfileListsEveryKernelAndLeavesTheResultAsItIs) {
   const Outcome quiet = denoise({"--profile", "--quiet"});
 
   EXPECT_TRUE(content(output_) == result);
-  EXPECT_THAT(profiled.out, HasSubstr("sweep"));
+  EXPECT_THAT(profiled.out, HasSubstr("sweep_full"));
   EXPECT_THAT(profiled.out, HasSubstr("peak of the device"));
   EXPECT_THAT(quiet.out, IsEmpty());
   const auto profile = nlohmann::json::parse(content(folder_ / "record.json"))["profile"];
@@ -115,7 +115,7 @@ TEST_F(Tune, ProfileListsEveryKernelAndLeavesTheResultAsItIs) {
   for (const auto& kernel : profile["kernels"]) {
     EXPECT_GE(kernel["calls"], 1);
     share += kernel["share_of_time"].get<double>();
-    if (kernel["kernel"] == "sweep") {
+    if (kernel["kernel"] == "sweep_full") {
       EXPECT_GT(kernel["share_of_peak"], 0);
       EXPECT_LT(kernel["share_of_peak"], 1.5);
     }

@@ -15,6 +15,7 @@
 namespace moclean {
 namespace {
 
+using opencl::BlockReport;
 using opencl::SegmentState;
 using test::download;
 using test::upload;
@@ -102,13 +103,11 @@ TEST_P(GroupSweepTest, FormGivesWhatIsThresholded) {
 
 TEST_P(GroupSweepTest, ShrinkIsTheStepOfTheReference) {
   const Buffer<double> d = upload(D_), x = upload(X_), a = upload(A_);
-  Buffer<double> t = upload(T_), squares(test::device(), batch_.block_count());
-  Buffer<std::int32_t> sparse(test::device(), batch_.block_count());
-  std::vector<double> sums(batch_.block_count());
-  std::vector<std::int32_t> flags(batch_.block_count());
-  launch("shrink", d, cl_int{0}, d, x, a, t, squares, sparse);
-  squares.read(sums);
-  sparse.read(flags);
+  Buffer<double> t = upload(T_);
+  Buffer<BlockReport> of_blocks(test::device(), batch_.block_count());
+  std::vector<BlockReport> reports(batch_.block_count());
+  launch("shrink", d, cl_int{0}, d, x, a, t, of_blocks);
+  of_blocks.read(reports);
 
   const SegmentBatch T = download(t, D_);
   double residual[2] = {0, 0}, sum[2] = {0, 0};
@@ -121,9 +120,9 @@ TEST_P(GroupSweepTest, ShrinkIsTheStepOfTheReference) {
     EXPECT_NEAR(T.segment(b)(i, j), next, test::tolerance::by_hand(8));
     residual[b] += std::pow((dual_next - dual) / 0.7, 2);
   });
-  for (std::size_t k = 0; k < sums.size(); ++k) {
-    sum[static_cast<Index>(k) < batch_.segment(1).first_block ? 0 : 1] += sums[k];
-    EXPECT_EQ(flags[k], ea() ? 0 : 1);
+  for (std::size_t k = 0; k < reports.size(); ++k) {
+    sum[static_cast<Index>(k) < batch_.segment(1).first_block ? 0 : 1] += reports[k].squares;
+    EXPECT_EQ(reports[k].sparse, ea() ? 0 : 1);
   }
   for (Index b = 0; b < 2; ++b)
     EXPECT_NEAR(sum[b], residual[b], 2 * test::tolerance::sum_of_products(D_.rows(b) * 5, 1));
@@ -132,9 +131,9 @@ TEST_P(GroupSweepTest, ShrinkIsTheStepOfTheReference) {
 TEST_P(GroupSweepTest, ShrinkKeepsThePaddingZeroAndLeavesFinishedSegmentsAlone) {
   states_[0].finished = 1;
   const Buffer<double> d = upload(D_), x = upload(X_), a = upload(A_);
-  Buffer<double> t = upload(T_), squares(test::device(), batch_.block_count());
-  Buffer<std::int32_t> sparse(test::device(), batch_.block_count());
-  launch("shrink", d, cl_int{0}, d, x, a, t, squares, sparse);
+  Buffer<double> t = upload(T_);
+  Buffer<BlockReport> reports(test::device(), batch_.block_count());
+  launch("shrink", d, cl_int{0}, d, x, a, t, reports);
 
   const SegmentBatch T = download(t, D_);
   EXPECT_TRUE(test::same_bits(Matrix(T.segment(0)), Matrix(T_.segment(0))));

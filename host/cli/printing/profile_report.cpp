@@ -13,9 +13,9 @@ struct Rates {
   double share_of_peak = 0;
 };
 
-// In mixed precision only the sweep calculates in float.
+// In mixed precision only the sweeps calculate in float.
 double peak_flops(const KernelProfile& kernel, const ProfileReport& report) {
-  const bool floats = report.precision == Precision::mixed && kernel.kernel == "sweep";
+  const bool floats = report.precision == Precision::mixed && kernel.kernel.starts_with("sweep");
   return floats ? report.peak.float_flops : report.peak.double_flops;
 }
 

@@ -21,7 +21,8 @@ enum class Initially { undefined, zero };
 ///   MemoryLayout layout(device, batch);             Memory memory(layout);    // allocates
 ///   memory_of<Memory>(rows, columns)                                          // counts
 ///
-/// Sizes are those of Batch; `count` matrices or vectors lie one after the other in a buffer.
+/// Sizes are those of Batch; `count` matrices or vectors lie one after the other in a buffer, none
+/// if it is 0.
 class MemoryLayout {
  public:
   MemoryLayout(const Device& device, const Batch& batch);
@@ -39,8 +40,9 @@ class MemoryLayout {
     return make<T>(stacked_, count, initially);
   }
   template <class T = double>
-  Buffer<T> square(Initially initially = Initially::undefined) {  ///< order x order pitch
-    return make<T>(square_, 1, initially);
+  Buffer<T> square(Initially initially = Initially::undefined,
+                   Index count = 1) {  ///< order x order pitch
+    return make<T>(square_, count, initially);
   }
   template <class T = double>
   Buffer<T> vector(Initially initially = Initially::undefined, Index count = 1) {  ///< order pitch

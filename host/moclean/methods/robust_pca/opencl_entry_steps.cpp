@@ -36,6 +36,12 @@ EntrySteps<Real>::GroupPrograms::GroupPrograms(const Device& device, int work_gr
     : Programs(device, kernel_source::sweep_group, group_defines(device, work_group)) {}
 
 template <class Real>
+EntrySteps<Real>::Sweeps::Sweeps(const Program& program)
+    : full(program, "sweep_full"),
+      low_rank(program, "sweep_low_rank"),
+      wide(program, "sweep_wide") {}
+
+template <class Real>
 EntrySteps<Real>::EntrySteps(const Device& device, const Tuning& tuning) {
   if (tuning.form == KernelForm::gpu) {
     if (Memory::mixed) throw ArgumentError("mixed precision works with form cpu only");
@@ -44,7 +50,7 @@ EntrySteps<Real>::EntrySteps(const Device& device, const Tuning& tuning) {
   }
   in_vectors_.emplace(device, kernel_source::sweep,
                       sweep_defines(device, number_type<Real>, tuning));
-  sweep_.emplace(in_vectors_->program, "sweep");
+  sweeps_.emplace(in_vectors_->program);
 }
 
 template <class Real>
@@ -69,20 +75,26 @@ void EntrySteps<Real>::form(const Batch& batch, Memory& m, GramOf which) {
 template <class Real>
 void EntrySteps<Real>::sweep(const Batch& batch, Memory& m, const Multiplier<Real>& by,
                              bool with_gram) {
-  sweep_->with([&] { return sweep_work(batch, host_copy(m.states), with_gram, sizeof(Real)); })(
-      grid(batch), batch.device_segments(), batch.device_blocks(), batch.active_blocks(), m.states,
-      m.D, m.X, m.T, m.A, m.E,                  // by entries
-      by.W, by.V, by.Z, by.f, m.scratch,        // A = XW of a chunk
-      cl_int{with_gram}, m.G, m.partial_grams,  // of the next X
-      m.partial_squares, m.partial_sparse);     // what the iteration reports
+  const auto launch = [&](Kernel& kernel, LowRankPart of, const auto&... factors) {
+    const auto work = [&] {
+      return sweep_work(batch, host_copy(m.states), of, with_gram, sizeof(Real));
+    };
+    kernel.with(work)(grid(batch), batch.device_segments(), batch.device_blocks(),
+                      batch.active_blocks(), m.states, m.D, m.T, m.A, m.E, factors...);
+  };
+  launch(sweeps_->full, LowRankPart::full, by.W, m.scratch, cl_int{with_gram}, m.G, m.partial_grams,
+         m.reports);
+  if (by.low_rank)
+    launch(sweeps_->low_rank, LowRankPart::low_rank, by.V, by.f, by.Z, m.scratch, cl_int{with_gram},
+           m.G, m.partial_grams, m.reports);
+  if (batch.has_wide()) launch(sweeps_->wide, LowRankPart::wide, by.W, m.X, m.scratch, m.reports);
 }
 
 template <class Real>
 void EntrySteps<Real>::shrink(const Batch& batch, Memory& m) {
   programs().shrink.with([&] { return shrink_work(batch, host_copy(m.states), sizeof(Real)); })(
       grid(batch), batch.device_segments(), batch.device_blocks(), batch.active_blocks(), m.states,
-      m.D, cl_int{m.missing}, m.missing ? m.observed : m.D, m.X, m.A, m.T, m.partial_squares,
-      m.partial_sparse);
+      m.D, cl_int{m.missing}, m.missing ? m.observed : m.D, m.X, m.A, m.T, m.reports);
 }
 
 template <class Real>

@@ -9,13 +9,14 @@
 namespace moclean::opencl {
 
 /// -D options of the programs that go over chunks of rows (kernels/robust_pca/sweep.cl,
-/// kernels/robust_pca/grams.cl).
+/// kernels/robust_pca/partial_grams.cl).
 Defines sweep_defines(const Device& device, NumberType type, const Tuning& tuning);
 
 /// What X is multiplied by in A = XW: W itself, or at low rank V diag(f) Z, of all segments.
 template <class Real>
 struct Multiplier {
   const Buffer<Real>&W, &V, &Z, &f;
+  bool low_rank;  ///< whether any segment may take V diag(f) Z
 };
 
 /// The steps of robust PCA that go over the entries of the stacked matrices of a batch, in one of
@@ -55,6 +56,11 @@ class EntrySteps {
     Program program;
     Kernel start, form, shrink, finish;
   };
+  struct Sweeps {
+    explicit Sweeps(const Program& program);
+
+    Kernel full, low_rank, wide;
+  };
   struct GroupPrograms : Programs {
     GroupPrograms(const Device& device, int work_group);
   };
@@ -65,7 +71,7 @@ class EntrySteps {
   int work_group_ = 1;
   std::optional<Programs> in_vectors_;
   std::optional<GroupPrograms> in_groups_;
-  std::optional<Kernel> sweep_;
+  std::optional<Sweeps> sweeps_;
 };
 
 }  // namespace moclean::opencl

@@ -12,6 +12,11 @@ Work elementwise_work(const SegmentRecord& segment, const SegmentState& state, d
   return {.flops = flops_per_entry * entries, .bytes = (state.order_ea ? 5 : 3) * entries * real};
 }
 
+LowRankPart low_rank_part(const SegmentRecord& segment, const SegmentState& state) {
+  if (segment.wide()) return LowRankPart::wide;
+  return state.low_rank ? LowRankPart::low_rank : LowRankPart::full;
+}
+
 Work product_work(const SegmentRecord& segment, const SegmentState& state, double real) {
   const double entries = double(segment.rows) * segment.columns, order = segment.order;
   if (state.low_rank)
@@ -21,11 +26,11 @@ Work product_work(const SegmentRecord& segment, const SegmentState& state, doubl
 
 }  // namespace
 
-Work sweep_work(const Batch& batch, const std::vector<SegmentState>& states, bool with_gram,
-                std::size_t real) {
+Work sweep_work(const Batch& batch, const std::vector<SegmentState>& states, LowRankPart of,
+                bool with_gram, std::size_t real) {
   const auto size = static_cast<double>(real);
   return total_work(batch, [&](std::size_t b, const SegmentRecord& segment) {
-    if (states[b].finished) return Work{};
+    if (states[b].finished || low_rank_part(segment, states[b]) != of) return Work{};
     Work work = elementwise_work(segment, states[b], size);
     work += product_work(segment, states[b], size);
     if (with_gram && !segment.wide()) {

@@ -70,9 +70,7 @@ kernel void gram_of_floats(global const segment_t* segments,  // [segments]
   if (is_wide(s) || (shifted_data && !decompose[block.segment])) return;
   const scalars_t k = scalars_of(state);
   global real* rows = widened + item * (size_t)SWEEP_ROWS * s.pitch;
-  global real* gram = block.block == 0 ? g + s.square
-                                       : partial_grams + s.partial +
-                                             (block.block - 1) * (size_t)s.order * s.order_pitch;
+  global real* gram = gram_of(block, s, g, partial_grams);
   const int begin = block_begin(block, s), end = block_end(block, s);
   for (int row = begin; row < end; row += SWEEP_ROWS) {
     const int count = min(SWEEP_ROWS, end - row);
