@@ -39,6 +39,8 @@ refuses moclean/motion/planted.cpp '  #  include "moclean/formats/read_write.hpp
 refuses moclean/solve/planted.hpp '#include "moclean/motion/recording.hpp"' 'may only include'
 refuses moclean/solve/reference/planted.cpp '#include "moclean/device/device.hpp"' 'may only include'
 refuses moclean/solve/reference/planted.cpp '#include "moclean/solve/opencl/x.hpp"' 'may only include'
+refuses moclean/solve/reference/planted.cpp '#include "moclean/solve/matrix_normal_steps.hpp"' 'is to check'
+refuses moclean/solve/reference/planted.cpp '#include "moclean/solve/matrix_normal_deviation.hpp"' 'is to check'
 refuses moclean/metric/planted.cpp '#include "moclean/elsewhere/x.hpp"' 'in no folder of the table'
 refuses moclean/elsewhere/planted.cpp 'int x;' 'in no folder of the table'
 refuses moclean/linalg/planted.cpp '#include <CL/opencl.hpp>' 'includes OpenCL'
