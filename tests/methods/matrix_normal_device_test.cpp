@@ -21,7 +21,7 @@ namespace {
 using test::BackendKind;
 using test::nan;
 
-// Motion with dense noise, gross errors and gaps.
+// Motion with dense noise, gross errors and gaps, one of which is long enough for lengths to count.
 Matrix hard_data(Index frames, Index columns, std::uint64_t seed) {
   Matrix data = test::synthetic_walk(frames, seed).samples.leftCols(std::min<Index>(columns, 93));
   if (columns > 93) {
@@ -36,6 +36,7 @@ Matrix hard_data(Index frames, Index columns, std::uint64_t seed) {
     if (random.uniform() < 0.05) x += 3;
     if (random.uniform() < 0.05) x = nan;
   }
+  if (frames >= 60 && columns >= 9) data.block(frames / 4, 3, 15, 3).setConstant(nan);
   return data;
 }
 

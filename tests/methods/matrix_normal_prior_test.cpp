@@ -38,6 +38,15 @@ TEST(Nearness, FallsWithDistanceOverItsMedian) {
   EXPECT_LE((nearness - expected).cwiseAbs().maxCoeff(), 1e-15);
 }
 
+TEST(Nearness, LooksAtTheMiddleFramesOf32Parts) {
+  Matrix positions = Matrix::Zero(64, 6);  // two joints, a thousand apart where nobody looks
+  for (Index i = 0; i < 64; ++i)           // of each two frames the one towards the middle
+    positions(i, 3) = (i < 32) == (i % 2 == 1) ? 1 : 1000;
+
+  EXPECT_NEAR(nearness_of(positions)(0, 1), std::exp(-1.), 1e-15);
+  EXPECT_NEAR(nearness_of(positions.colwise().reverse())(0, 1), std::exp(-1.), 1e-15);
+}
+
 TEST(Nearness, IsSemidefiniteAndOfNoUnit) {
   const Matrix positions = test::random_matrix(50, 30, 1);
 

@@ -36,6 +36,7 @@ declare -A may_include=(
 only_in=(
   '#include <CL/|moclean/device|includes OpenCL'
   '#include <clblast|moclean/linalg|includes CLBlast'
+  'matrix_normal/(window|deviation)[.]hpp"|moclean/methods moclean/methods/opencl|includes what the reference is to check'
   'fstream|fopen[(]|moclean/formats cli|opens a file'
   'std::(cout|cerr|clog)|#include <iostream>|(^|[^a-z_])(f?printf|f?puts)[(]|fmt::print|cli|prints'
   '(^|[^a-z_])(exit|_Exit|quick_exit|abort|terminate)[(]|cli|ends the program'

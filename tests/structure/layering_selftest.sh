@@ -40,6 +40,8 @@ refuses moclean/solve/planted.hpp '#include "moclean/motion/recording.hpp"' 'may
 refuses moclean/methods/robust_pca/planted.hpp '#include "moclean/linalg/batch.hpp"' 'may only include'
 refuses moclean/methods/robust_pca/reference_planted.cpp '#include "moclean/device/device.hpp"' 'may only include'
 refuses moclean/methods/robust_pca/reference_planted.cpp '#include "moclean/methods/robust_pca/opencl.hpp"' 'may only include'
+refuses moclean/methods/matrix_normal/reference_planted.cpp '#include "moclean/methods/matrix_normal/window.hpp"' 'is to check'
+refuses moclean/methods/matrix_normal/reference_planted.cpp '#include "moclean/methods/matrix_normal/deviation.hpp"' 'is to check'
 refuses moclean/methods/robust_pca/opencl_planted.cpp '#include "moclean/backend/backend.hpp"' 'may only include'
 refuses moclean/methods/robust_pca/planted.hpp '#include "moclean/methods/spectral/weights.hpp"' 'of another method'
 refuses moclean/metric/planted.cpp '#include "moclean/elsewhere/x.hpp"' 'in no folder of the table'

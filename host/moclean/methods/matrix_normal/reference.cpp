@@ -1,61 +1,43 @@
 // Notation: D data, S motion, W weights over variances, P precisions, R about Q^-1, r residual, z =
-// M^-1 r preconditioned residual, p direction; see methods/matrix_normal/matrix_normal.hpp and
-// matrix_normal_steps.hpp.
+// M^-1 r preconditioned residual, p direction; see methods/matrix_normal/matrix_normal.hpp.
 #include "moclean/methods/matrix_normal/reference.hpp"
 
 #include <Eigen/Eigenvalues>
 
 #include "moclean/core/error.hpp"
-#include "moclean/methods/matrix_normal/window.hpp"
+#include "moclean/methods/matrix_normal/reference_model.hpp"
+#include "moclean/methods/matrix_normal/reference_sigma.hpp"
 
 namespace moclean::reference {
 namespace {
 
-/// M = L diag(pivot) L' with a unit L of two lower bands; per column diag(W_j) + R_jj Delta'P
-/// Delta.
+Eigen::VectorXd solved(const BandMatrix& factor, Eigen::VectorXd b) {
+  moclean::solve(factor, {b.data(), static_cast<std::size_t>(b.size())});
+  return b;
+}
+
+/// M, per column diag(W_j) + R_jj Delta'P Delta and a little, so that it is definite in columns
+/// without samples.
 class Preconditioner {
  public:
   Preconditioner(const Matrix& weights, const Eigen::VectorXd& precision,
-                 const Eigen::RowVectorXd& stiffness)
-      : inverse_pivot_(weights.rows(), weights.cols()),
-        first_(Matrix::Zero(weights.rows(), weights.cols())),
-        second_(first_) {
-    const Index rows = weights.rows();
-    const double least = least_preconditioner_weight * stiffness.mean();
-    for (Index i = 0; i < rows; ++i) {
-      const auto p = [&](Index k) { return k >= 0 ? precision(k) : 0.; };
-      const double diagonal = p(i) + 4 * p(i - 1) + p(i - 2);
-      const double next = -2 * (p(i - 1) + p(i - 2));
-      Eigen::RowVectorXd pivot = weights.row(i) + diagonal * stiffness;
-      pivot.array() += least;
-      if (i >= 2) second_.row(i) = p(i - 2) * stiffness.cwiseProduct(inverse_pivot_.row(i - 2));
-      if (i >= 1) {
-        Eigen::RowVectorXd l = next * stiffness;
-        if (i >= 2) l -= p(i - 2) * stiffness.cwiseProduct(first_.row(i - 1));
-        first_.row(i) = l.cwiseProduct(inverse_pivot_.row(i - 1));
-        pivot -= l.cwiseProduct(first_.row(i));
-      }
-      if (i >= 2) pivot -= p(i - 2) * stiffness.cwiseProduct(second_.row(i));
-      inverse_pivot_.row(i) = pivot.cwiseInverse();
+                 const Eigen::VectorXd& stiffness) {
+    const double least = 1e-9 * stiffness.mean();
+    for (Index j = 0; j < weights.cols(); ++j) {
+      columns_.push_back(smoothing_system(weights.col(j).array() + least, precision, stiffness(j)));
+      factor(columns_.back());
     }
   }
 
-  Matrix solve(Matrix x) const {
-    const Index rows = x.rows();
-    for (Index i = 1; i < rows; ++i) {
-      x.row(i) -= first_.row(i).cwiseProduct(x.row(i - 1));
-      if (i >= 2) x.row(i) -= second_.row(i).cwiseProduct(x.row(i - 2));
-    }
-    x = x.cwiseProduct(inverse_pivot_);
-    for (Index i = rows - 2; i >= 0; --i) {
-      x.row(i) -= first_.row(i + 1).cwiseProduct(x.row(i + 1));
-      if (i + 2 < rows) x.row(i) -= second_.row(i + 2).cwiseProduct(x.row(i + 2));
-    }
-    return x;
+  Matrix solve(const Matrix& b) const {
+    Matrix result(b.rows(), b.cols());
+    for (Index j = 0; j < b.cols(); ++j)
+      result.col(j) = solved(columns_[static_cast<std::size_t>(j)], b.col(j));
+    return result;
   }
 
  private:
-  Matrix inverse_pivot_, first_, second_;
+  std::vector<BandMatrix> columns_;  // factors
 };
 
 struct Spectrum {
@@ -70,6 +52,21 @@ struct Spectrum {
 Spectrum spectrum_of(const Matrix& square) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(square);
   return {eigen.eigenvalues(), eigen.eigenvectors()};
+}
+
+// Frames without samples are appended to a window shorter than it is wide until rows = columns.
+Matrix extended(const Matrix& x, Index rows) {
+  Matrix result = Matrix::Zero(rows, x.cols());
+  result.topRows(x.rows()) = x;
+  return result;
+}
+
+// 1 of the accelerations that this adds; 0 of the last two rows, which are none.
+Eigen::VectorXd extended(const Eigen::VectorXd& precision, Index rows) {
+  Eigen::VectorXd result = Eigen::VectorXd::Ones(rows);
+  result.head(precision.size()) = precision;
+  result.tail(2).setZero();
+  return result;
 }
 
 }  // namespace
@@ -88,7 +85,7 @@ Matrix stiffness(const Matrix& x, const Eigen::VectorXd& precision) {
 
 int smooth(const Matrix& data, const Matrix& weights, const Eigen::VectorXd& precision,
            const Matrix& R, int iterations, double tolerance, Matrix& S) {
-  const Preconditioner M(weights, precision, R.diagonal().transpose());
+  const Preconditioner M(weights, precision, R.diagonal());
   const auto product = [&](const Matrix& x) -> Matrix {
     return weights.cwiseProduct(x) + stiffness(x, precision) * R;
   };
@@ -112,38 +109,53 @@ int smooth(const Matrix& data, const Matrix& weights, const Eigen::VectorXd& pre
   return taken;
 }
 
+namespace {
+
+// The rough motion smoothed, each column for its own noise; where frames are appended it goes on as
+// it ends.
+Matrix first_motion(const SmoothingState& state, Index rows) {
+  const RoughMotion rough = rough_motion(state);
+  Matrix D = rough.motion.bottomRows(1).replicate(rows, 1);
+  D.topRows(state.frames()) = rough.motion;
+  Matrix S = D;
+  smooth(D, Matrix::Ones(rows, D.cols()), extended(state.precision, rows),
+         rough.stiffness.asDiagonal().toDenseMatrix(), state.method->solve_iterations,
+         state.method->tolerance(0), S);
+  return S;
+}
+
+}  // namespace
+
 MatrixNormalSolution solve(const ConstMatrixRef& data, const MatrixNormal& method,
                            const std::stop_token& stop, const MotionPrior& prior) {
-  MatrixNormalWindow window(data, method, prior);
+  SmoothingState state = begin(data, method, prior);
   MatrixNormalSolution solution;
   solution.outcome = {
       .iterations = 0, .rank = {}, .residual = 0, .converged = false, .fixed_steps = true};
-  Matrix S = Matrix::Zero(window.rows(), window.columns());
+  Matrix S = filled(state);
   Spectrum Q;
-  if (!window.trivial()) {
-    const Matrix ones = Matrix::Ones(window.rows(), window.columns());
-    const auto guess = window.first_guess();
-    S = guess.motion;
-    smooth(guess.motion, ones, window.precision(), guess.stiffness.asDiagonal().toDenseMatrix(),
-           method.solve_iterations, method.tolerance(0), S);
-    for (int step = 0; step < window.steps(); ++step) {
+  const bool learns = data.rows() >= 5 && state.observed.any();
+  if (learns) {
+    const Index rows = std::max(data.rows(), data.cols());
+    S = first_motion(state, rows);
+    for (int step = 0; step < method.soft_steps + method.hard_steps; ++step) {
       if (stop.stop_requested()) throw Cancelled();
-      Matrix A = window.accelerations(S);
-      if (const auto growth = window.growth()) A *= Q.weighted(*growth);
-      Matrix square = A.transpose() * A;
-      window.add_prior(square);
-      Q = spectrum_of(square);
-      const Matrix R = Q.weighted(window.inverse_spectrum(Q.values));
-      window.weigh(S, R);
-      solution.outcome.iterations += smooth(window.target(), window.weights(), window.precision(),
-                                            R, method.solve_iterations, method.tolerance(step), S);
-      window.estimate_noise(S);
+      Matrix A = learned_accelerations(state, S);
+      if (const auto kept = kept_shares(state)) A *= Q.weighted(kept->cwiseSqrt().cwiseInverse());
+      Q = spectrum_of(drawn_to_nearness(state, A.transpose() * A));
+      state.spectrum = ridged(state, Q.values);
+      const Matrix R = Q.weighted(state.spectrum.cwiseInverse());
+      const Terms terms = weigh(state, S, R);
+      solution.outcome.iterations += smooth(
+          extended(terms.target, rows), extended(terms.weights, rows),
+          extended(state.precision, rows), R, method.solve_iterations, method.tolerance(step), S);
+      estimate_noise(state, S);
     }
   }
-  solution.low_rank = window.trivial() ? window.filled() : window.cleaned(S);
-  solution.sparse = window.rejected(solution.low_rank);
-  solution.trusted = window.trusted().cast<double>();
-  solution.deviation = window.deviation(S, Q.vectors.transpose());
+  solution.low_rank = cleaned(state, S);
+  solution.sparse = rejected(state, solution.low_rank);
+  solution.trusted = (state.weights.array() > 0).cast<double>();
+  solution.deviation = deviation(state, S, Q.vectors.transpose());
   return solution;
 }
 

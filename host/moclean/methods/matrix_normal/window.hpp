@@ -11,8 +11,9 @@
 
 namespace moclean {
 
-/// What the steps of MatrixNormal do to one window beside its linear algebra: statistics, weights,
-/// noise. The same bits on every backend. A step is
+/// What the steps of MatrixNormal do to one window beside its linear algebra, for the device form:
+/// statistics, weights, noise. The reference has them in a text of its own
+/// (methods/matrix_normal/reference_model.hpp), which says whether this one is right. A step is
 ///   A = accelerations(S), times growth() if there is one;   add_prior(A'A) = Z' diag(e) Z
 ///   R = Z' diag(inverse_spectrum(e)) Z, about Q^-1
 ///   weigh(S, R)
