@@ -164,11 +164,11 @@ TEST(DrawnToNearness, WeighsFramesSeenAgainstTenExpected) {
   Matrix Q = Matrix::Ones(6, 6);
   Q.diagonal() << 4, 4, 4, 9, 9, 9;
 
-  const Matrix drawn = drawn_to_nearness(e.state, Q);
+  const Matrix with_prior = with_nearness_prior(e.state, Q);
 
-  EXPECT_DOUBLE_EQ(drawn(0, 3), (1 + 0.5 * 2 * 3) / 2);
-  EXPECT_DOUBLE_EQ(drawn(0, 4), 0.5);
-  EXPECT_DOUBLE_EQ(drawn(3, 3), 9);
+  EXPECT_DOUBLE_EQ(with_prior(0, 3), (1 + 0.5 * 2 * 3) / 2);
+  EXPECT_DOUBLE_EQ(with_prior(0, 4), 0.5);
+  EXPECT_DOUBLE_EQ(with_prior(3, 3), 9);
 }
 
 TEST(DrawnToNearness, ExpectsMoreWhereSmoothingLeftLess) {
@@ -177,9 +177,9 @@ TEST(DrawnToNearness, ExpectsMoreWhereSmoothingLeftLess) {
   e.state.nearness = Matrix::Identity(3, 3);
   const double left = kept_share(4, 1), expected = 10 + 50 * (1 - left);
 
-  const Matrix drawn = drawn_to_nearness(e.state, Matrix::Ones(3, 3));
+  const Matrix with_prior = with_nearness_prior(e.state, Matrix::Ones(3, 3));
 
-  EXPECT_DOUBLE_EQ(drawn(0, 1), 1 - expected / (expected + 10 * left));
+  EXPECT_DOUBLE_EQ(with_prior(0, 1), 1 - expected / (expected + 10 * left));
 }
 
 TEST(KeptShares, AreOfNoInterestWithoutNoise) {

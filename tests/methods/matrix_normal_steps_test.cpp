@@ -153,10 +153,10 @@ TEST_P(MatrixNormalSteps, AreThoseOfTheReference) {
       expect_same(*growth, kept->cwiseSqrt().cwiseInverse(), "growth");
       A *= Z.transpose() * kept->cwiseSqrt().cwiseInverse().asDiagonal() * Z;
     }
-    Matrix drawn = A.transpose() * A;
-    const Matrix Q = reference::drawn_to_nearness(state, drawn);
-    window.add_prior(drawn);
-    expect_same(drawn, Q, "Q");
+    Matrix with_prior = A.transpose() * A;
+    const Matrix Q = reference::with_nearness_prior(state, with_prior);
+    window.add_prior(with_prior);
+    expect_same(with_prior, Q, "Q");
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(Q);
     Z = eigen.eigenvectors().transpose();
     state.spectrum = reference::ridged(state, eigen.eigenvalues());

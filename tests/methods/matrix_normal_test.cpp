@@ -109,7 +109,7 @@ TEST(Reach, IsTheHarmonicDistanceToSamplesInUse) {
   Matrix weights(5, 1);
   weights << 1, 0, 0, 1, 1;
 
-  const Matrix h = reach(weights);
+  const Matrix h = gap_distance(weights);
 
   EXPECT_DOUBLE_EQ(h(1, 0), 2. * 1 * 2 / 3);  // 1 before, 2 after
   EXPECT_DOUBLE_EQ(h(2, 0), 2. * 2 * 1 / 3);

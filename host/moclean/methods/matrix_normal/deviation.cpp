@@ -77,7 +77,7 @@ double noise_of(const MotionEstimate& e) {
 
 // Q has been learned from the same noise, and fits it: the variance of S over the model's, the more
 // the fewer free accelerations are left of a column beside the number of columns; hardly where Q
-// was drawn to what is known beforehand.
+// has a prior.
 double learned_noise(const MotionEstimate& e) {
   if (e.has_prior) return least_learned;
   const double noise = noise_of(e);

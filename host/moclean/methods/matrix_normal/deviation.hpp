@@ -20,7 +20,7 @@ struct MotionEstimate {
   double size = 0;            ///< of a body: typical distances, above 0
   double floor = 0;           ///< sigma that is none: samples in use come out as they are; above 0
   Index joint_columns = 3;
-  bool has_prior = false;  ///< Q was drawn to what is known of such motion beforehand
+  bool has_prior = false;  ///< Q has a prior, see MatrixNormalWindow::add_prior()
 };
 
 /// Marginal standard deviation of every entry of S, [frames x columns]; docs/decisions/sigma.md.

@@ -142,7 +142,7 @@ MatrixNormalSolution solve(const ConstMatrixRef& data, const MatrixNormal& metho
       if (stop.stop_requested()) throw Cancelled();
       Matrix A = learned_accelerations(state, S);
       if (const auto kept = kept_shares(state)) A *= Q.weighted(kept->cwiseSqrt().cwiseInverse());
-      Q = spectrum_of(drawn_to_nearness(state, A.transpose() * A));
+      Q = spectrum_of(with_nearness_prior(state, A.transpose() * A));
       state.spectrum = ridged(state, Q.values);
       const Matrix R = Q.weighted(state.spectrum.cwiseInverse());
       const Terms terms = weigh(state, S, R);

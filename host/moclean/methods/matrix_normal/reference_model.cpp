@@ -235,7 +235,7 @@ Matrix learned_accelerations(const SmoothingState& s, const ConstMatrixRef& S) {
   return a;
 }
 
-Matrix drawn_to_nearness(const SmoothingState& s, const Matrix& Q) {
+Matrix with_nearness_prior(const SmoothingState& s, const Matrix& Q) {
   if (s.nearness.size() == 0) return Q;
   const std::optional<Eigen::VectorXd> kept = kept_shares(s);
   const double left = kept ? kept->mean() : 1;

@@ -80,9 +80,9 @@ std::optional<Eigen::VectorXd> kept_shares(const SmoothingState& state);
 /// [frames - 2 x columns].
 Matrix learned_accelerations(const SmoothingState& state, const ConstMatrixRef& S);
 
-/// Q, the sum over the frames of the products of the accelerations, drawn to sqrt(Q_ii Q_jj) times
-/// the nearness of i and j.
-Matrix drawn_to_nearness(const SmoothingState& state, const Matrix& Q);
+/// Q, the sum over the frames of the products of the accelerations, with the prior sqrt(Q_ii Q_jj)
+/// times the nearness of i and j.
+Matrix with_nearness_prior(const SmoothingState& state, const Matrix& Q);
 
 /// e, given the eigenvalues of that: over the number of accelerations, with a ridge.
 Eigen::VectorXd ridged(const SmoothingState& state, const Eigen::VectorXd& eigenvalues);

@@ -61,7 +61,7 @@ double dense_noise_level(const ConstMatrixRef& data) {
   return quantile(differences, 0.25) / quartile / std::sqrt(squares);
 }
 
-Matrix reach(const ConstMatrixRef& weights) {
+Matrix gap_distance(const ConstMatrixRef& weights) {
   constexpr double in_use = 0.3;
   constexpr double beyond_end = 3;
   using Row = Eigen::Array<double, 1, Eigen::Dynamic>;

@@ -20,7 +20,7 @@ double dense_noise_level(const ConstMatrixRef& data);
 /// Harmonic mean 2ab / (a + b) of the numbers of frames a, b from each sample to the nearest ones
 /// before and after it whose weight is above 0.3: 1 between two neighbours. The ends of the window
 /// count as three frames farther than they are.
-Matrix reach(const ConstMatrixRef& weights);
+Matrix gap_distance(const ConstMatrixRef& weights);
 
 /// Raises every entry to the median over its joint's columns where that is larger.
 void raise_to_joint_median(Matrix& energies, Index joint_columns);

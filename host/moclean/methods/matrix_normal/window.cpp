@@ -31,7 +31,7 @@ constexpr double learned_weight = 0.3;  // least weight of samples that scales a
 constexpr double clip_deviations = 5, near_deviations = 3;
 // Of prior samples: the errors in a gap are one slow curve, and in a short one S knows better.
 constexpr double prior_weight_per_lag = 0.03, most_prior_weight = 0.3;
-constexpr double length_weight = 0.1, length_reach = 4;  // of joints put on lengths; frames
+constexpr double length_weight = 0.1, length_distance = 4;  // of joints put on lengths; frames
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 
 double square(double x) { return x * x; }
@@ -180,7 +180,7 @@ Eigen::VectorXd MatrixNormalWindow::inverse_spectrum(const Eigen::VectorXd& eige
 // Squared residuals in predictive deviations: the larger of the entry's own and the median of its
 // joint's.
 Matrix MatrixNormalWindow::energies(const ConstMatrixRef& motion) const {
-  Matrix energy = reach(weights_);
+  Matrix energy = gap_distance(weights_);
   for (Index i = 0; i < frames_; ++i)
     for (Index j = 0; j < columns(); ++j) {
       const double variance = square(sigma_) + energy(i, j) * predictive_(j) / 6;
@@ -223,12 +223,12 @@ void MatrixNormalWindow::add_prior_samples() {
 void MatrixNormalWindow::weigh_softly(const Matrix& energy) {
   const double place =
       method_->soft_steps > 1 ? static_cast<double>(step_) / (method_->soft_steps - 1) : 1;
-  const double cut =
+  const double limit =
       method_->soft_first * std::pow(method_->soft_last / method_->soft_first, place);
   for (Index i = 0; i < frames_; ++i)
     for (Index j = 0; j < columns(); ++j) {
       weights_(i, j) = confirmed(i, j) ? observed_(i, j)
-                                       : observed_(i, j) / square(1 + energy(i, j) / square(cut));
+                                       : observed_(i, j) / square(1 + energy(i, j) / square(limit));
       solve_weights_(i, j) = weights_(i, j) / (square(sigma_) + predictive_(j) / 6);
     }
 }
@@ -247,12 +247,12 @@ void MatrixNormalWindow::weigh_hard(const Matrix& energy, const ConstMatrixRef& 
 // variance that the gap leaves open.
 void MatrixNormalWindow::build_on_lengths(const ConstMatrixRef& motion) {
   const Index width = method_->joint_columns, joints = columns() / width;
-  const Matrix h = reach(weights_);
+  const Matrix h = gap_distance(weights_);
   const Mask lost = weights_.array() <= 0;
   Mask free(frames_, joints);
   for (Index j = 0; j < joints; ++j)
     free.col(j) = lost.middleCols(j * width, width).rowwise().any();
-  const Mask open = observed_.array() <= 0 && h.array() > length_reach;
+  const Mask open = observed_.array() <= 0 && h.array() > length_distance;
   for (Index i = 0; i < frames_; ++i)
     if (!open.row(i).any()) free.row(i).setConstant(false);  // a frame that asks for nothing
   Matrix placed = lost.select(motion.topRows(frames_), data_.topRows(frames_));

@@ -55,8 +55,8 @@ class MatrixNormalWindow {
   /// undo what smoothing took from it. Empty where noise does not matter yet.
   std::optional<Eigen::VectorXd> growth() const;
 
-  /// A'A, of which the upper triangle is read, drawn to what joints near each other do: alike. The
-  /// less is known of the accelerations, the more.
+  /// A'A, of which the upper triangle is read, with the prior that joints near each other move
+  /// alike. The less is known of the accelerations, the more.
   void add_prior(Eigen::Ref<Matrix> square) const;
 
   /// 1 / (e + ridge), given the eigenvalues of that.
