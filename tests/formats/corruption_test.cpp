@@ -9,6 +9,7 @@
 #include "moclean/formats/bvh.hpp"
 #include "moclean/formats/csv.hpp"
 #include "moclean/formats/npy.hpp"
+#include "moclean/formats/trc.hpp"
 
 #include "formats/tiny_files.hpp"
 
@@ -41,6 +42,8 @@ std::vector<Format> formats() {
            [skeleton = asf(test::tiny_asf)](std::string_view text) {
              return joint_positions(parse_amc(text, "x.amc", skeleton));
            }},
+          {"trc", std::string(test::tiny_trc),
+           [](std::string_view text) { return parse_trc(text, "x.trc"); }},
           {"csv", std::string(test::tiny_csv),
            [](std::string_view text) { return parse_csv(text, "x.csv"); }},
           {"npy", tiny_npy(), [](std::string_view text) { return parse_npy(text, "x.npy"); }}};

@@ -55,9 +55,9 @@ TEST(Formats, AreFoundByExtensionInAnyCase) {
 }
 
 TEST(Formats, AreListedForHelpTextsAndForSentences) {
-  EXPECT_EQ(listed_extensions(can_read), ".bvh .amc .csv .npy");
-  EXPECT_EQ(any_extension(can_read), ".bvh, .amc, .csv or .npy");
-  EXPECT_EQ(any_extension(can_write), ".csv or .npy");
+  EXPECT_EQ(listed_extensions(can_read), ".bvh .amc .trc .csv .npy");
+  EXPECT_EQ(any_extension(can_read), ".bvh, .amc, .trc, .csv or .npy");
+  EXPECT_EQ(any_extension(can_write), ".trc, .csv or .npy");
   EXPECT_EQ(any_extension([](const Format& format) { return format.name == "BVH"; }), ".bvh");
   EXPECT_THAT(any_extension([](const Format&) { return false; }), IsEmpty());
 }
@@ -108,6 +108,7 @@ class EachReadable : public testing::Test {
     folder_.file("tiny.asf", test::tiny_asf);
     folder_.file("tiny.bvh", test::tiny_bvh);
     folder_.file("tiny.amc", test::tiny_amc);
+    folder_.file("tiny.trc", test::tiny_trc);
     folder_.file("tiny.csv", test::tiny_csv);
     write_recording(folder_.path() / "tiny.npy", {Matrix{{1, 2, 3}}, {"a", "b", "c"}, 120, "mm"});
   }

@@ -88,6 +88,19 @@ root 1 2 3 90 0 90
 thigh 0 0
 )";
 
+/// Two markers, three frames at 100 Hz; a is missing in the second, b in the third.
+inline constexpr std::string_view tiny_trc =
+    "PathFileType\t4\t(X/Y/Z)\ttiny.trc\n"
+    "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\tOrigDataStartFrame\t"
+    "OrigNumFrames\n"
+    "100.00\t100.00\t3\t2\tmm\t100.00\t1\t3\n"
+    "Frame#\tTime\tR Heel\t\t\tb\t\t\n"
+    "\t\tX1\tY1\tZ1\tX2\tY2\tZ2\n"
+    "\n"
+    "1\t0.000\t1.50\t-2.25\t3\t4.00\t5.00\t6.00\n"
+    "2\t0.010\t\t\t\t4.10\t5.10\t6.10\n"
+    "3\t0.020\t1.70\t-2.45\t3.2\t\t\t\n";
+
 inline constexpr std::string_view tiny_csv = R"(# frame_rate: 120
 # unit: mm
 "hip, left",hip.y,hip.z

@@ -11,15 +11,13 @@
 #include "moclean/formats/csv.hpp"
 #include "moclean/formats/extension.hpp"
 #include "moclean/formats/npy.hpp"
+#include "moclean/formats/trc.hpp"
 
 namespace moclean {
 
 std::span<const Format* const> formats() {
-  static constexpr std::array<const Format*, 4> all = {
-      &bvh_format,
-      &amc_format,
-      &csv_format,
-      &npy_format,
+  static constexpr std::array<const Format*, 5> all = {
+      &bvh_format, &amc_format, &trc_format, &csv_format, &npy_format,
   };
   return all;
 }
