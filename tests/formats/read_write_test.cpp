@@ -82,7 +82,7 @@ TEST(WriteRecording, ChoosesTheFormatByExtension) {
     EXPECT_EQ(read_recording(folder.path() / name).samples, clip.samples) << name;
   }
   EXPECT_THAT([&] { write_recording(folder.path() / "x.bvh", clip); },
-              ThrowsMessage<FileError>(HasSubstr("expected a name ending in .csv or .npy")));
+              ThrowsMessage<FileError>(HasSubstr("expected a name ending in .c3d, .csv or .npy")));
 }
 
 TEST(WriteRecording, KeepsTheOldFileWhenItFails) {
