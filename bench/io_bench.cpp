@@ -126,7 +126,7 @@ void add_all() {
   }
   if (takes().empty()) return;
   const fs::path file = takes().front();
-  for (const std::string extension : {".csv", ".npy"}) {
+  for (const std::string extension : {".csv", ".npy", ".c3d"}) {
     const std::string name = file.stem().string() + extension;
     add("write/" + name, [=](auto& state) { write(state, file, extension); });
     add("read/" + name, [=](auto& state) { read_written(state, file, extension); });

@@ -196,7 +196,7 @@ TEST(Convert, CannotWriteSkeletonFiles) {
   const Outcome outcome = run({"convert", walk, folder / "walk.bvh"});
 
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("expected .csv or .npy"));
+  EXPECT_THAT(outcome.err, HasSubstr("expected .c3d, .csv or .npy"));
 }
 
 TEST(Info, StatesWhatTheFileHolds) {

@@ -7,10 +7,12 @@
 #include "moclean/core/random.hpp"
 #include "moclean/formats/amc.hpp"
 #include "moclean/formats/bvh.hpp"
+#include "moclean/formats/c3d.hpp"
 #include "moclean/formats/csv.hpp"
 #include "moclean/formats/npy.hpp"
 #include "moclean/formats/trc.hpp"
 
+#include "formats/c3d_maker.hpp"
 #include "formats/tiny_files.hpp"
 
 namespace moclean {
@@ -46,6 +48,8 @@ std::vector<Format> formats() {
            [](std::string_view text) { return parse_trc(text, "x.trc"); }},
           {"csv", std::string(test::tiny_csv),
            [](std::string_view text) { return parse_csv(text, "x.csv"); }},
+          {"c3d", test::C3dMaker{.frames = std::vector(16, std::vector<double>(8, 1.0))}.bytes(),
+           [](std::string_view bytes) { return parse_c3d(bytes, "x.c3d"); }},
           {"npy", tiny_npy(), [](std::string_view text) { return parse_npy(text, "x.npy"); }}};
 }
 

@@ -55,9 +55,9 @@ TEST(Formats, AreFoundByExtensionInAnyCase) {
 }
 
 TEST(Formats, AreListedForHelpTextsAndForSentences) {
-  EXPECT_EQ(listed_extensions(can_read), ".bvh .amc .trc .csv .npy");
-  EXPECT_EQ(any_extension(can_read), ".bvh, .amc, .trc, .csv or .npy");
-  EXPECT_EQ(any_extension(can_write), ".trc, .csv or .npy");
+  EXPECT_EQ(listed_extensions(can_read), ".bvh .amc .c3d .trc .csv .npy");
+  EXPECT_EQ(any_extension(can_read), ".bvh, .amc, .c3d, .trc, .csv or .npy");
+  EXPECT_EQ(any_extension(can_write), ".c3d, .trc, .csv or .npy");
   EXPECT_EQ(any_extension([](const Format& format) { return format.name == "BVH"; }), ".bvh");
   EXPECT_THAT(any_extension([](const Format&) { return false; }), IsEmpty());
 }
@@ -75,19 +75,22 @@ TEST(Formats, AreAllNamedWhereAnExtensionIsUnknown) {
       ThrowsMessage<FileError>(HasSubstr("name ending in " + any_extension(can_write))));
 }
 
+// What a format can hold of two samples of a point, the second of which is partly missing.
+Matrix hip_samples(const FormatContent& content) {
+  const double gap = test::nan;
+  if (content.single_precision) return Matrix{{0.1F, -2e-30F, 1.F / 3}, {gap, gap, gap}};
+  return Matrix{{0.1, -2e-300, 1. / 3}, {4, content.gaps ? gap : 5, 1e140}};
+}
+
 // The samples are the same bits whatever the format; all else is so if the format claims it.
 TEST(Formats, ReadBackWhatTheyWrite) {
   const TemporaryFolder folder;
-  const double gap = test::nan;
   for (const Format* format : formats()) {
     if (!can_read(*format) || !can_write(*format)) continue;
     SCOPED_TRACE(format->name);
     const FormatContent& content = format->content;
-    const Recording recording{Matrix{{0.1, -2e-300, 1. / 3}, {4, content.gaps ? gap : 5, 1e140}},
-                              {"hip.x", "hip.y", "hip.z"},
-                              59.94,
-                              "mm",
-                              UpAxis::z};
+    const Recording recording{
+        hip_samples(content), {"hip.x", "hip.y", "hip.z"}, 59.94, "mm", UpAxis::z};
     const auto file = folder.path() / ("take" + std::string(format->extension));
 
     write_recording(file, recording);
@@ -111,6 +114,8 @@ class EachReadable : public testing::Test {
     folder_.file("tiny.trc", test::tiny_trc);
     folder_.file("tiny.csv", test::tiny_csv);
     write_recording(folder_.path() / "tiny.npy", {Matrix{{1, 2, 3}}, {"a", "b", "c"}, 120, "mm"});
+    write_recording(folder_.path() / "tiny.c3d",
+                    {Matrix{{1, 2, 3}}, {"hip.x", "hip.y", "hip.z"}, 120, "mm"});
   }
 
   std::filesystem::path file(const Format& format) const {

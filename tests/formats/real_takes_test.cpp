@@ -1,5 +1,6 @@
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -8,6 +9,7 @@
 #include "moclean/formats/find_skeleton.hpp"
 #include "moclean/formats/read_write.hpp"
 
+#include "formats/temporary_folder.hpp"
 #include "support/data.hpp"
 #include "support/tolerance.hpp"
 
@@ -96,6 +98,62 @@ TEST(AmcTake, HasTheLengthsPrintedInTheSkeletonFile) {
   EXPECT_NEAR(length("lhipjoint", "lfemur"), 7.51824, 7.51824 * test::tolerance::printed_digits());
   EXPECT_NEAR(length("lfemur", "ltibia"), 7.3685, 7.3685 * test::tolerance::printed_digits());
   EXPECT_NEAR(length("root", "lowerback"), 2.08277, 2.08277 * test::tolerance::printed_digits());
+}
+
+struct C3dTake {
+  std::string file;
+  Index frames;
+  Index points;
+  double rate;
+  Index missing;  // points, counted in every frame, by another reading of the bytes (NumPy)
+};
+
+void PrintTo(const C3dTake& take, std::ostream* out) { *out << take.file; }
+
+class C3dTakes : public testing::TestWithParam<C3dTake> {};
+
+TEST_P(C3dTakes, HasItsPointsAndGapsAndIsWrittenWithoutAByteChanged) {
+  const C3dTake& expected = GetParam();
+  const auto file = test::shared_data("c3d/" + expected.file);
+  MOCLEAN_REQUIRE_FILE(file);
+  const test::TemporaryFolder folder;
+
+  const Recording take = read_recording(file);
+  write_recording(folder.path() / "out.c3d", take);
+
+  EXPECT_EQ(take.frames(), expected.frames);
+  EXPECT_EQ(take.samples.cols(), 3 * expected.points);
+  EXPECT_EQ(take.frame_rate, expected.rate);
+  EXPECT_EQ(take.samples.array().isNaN().count(), 3 * expected.missing);
+  EXPECT_TRUE(read_file(folder.path() / "out.c3d") == read_file(file));
+}
+
+INSTANTIATE_TEST_SUITE_P(Real, C3dTakes,
+                         testing::Values(C3dTake{"02_01.c3d", 343, 41, 120, 0},
+                                         C3dTake{"03_rolling.c3d", 2305, 68, 175, 35965},
+                                         C3dTake{"mocap36.c3d", 1380, 36, 100, 8244},
+                                         C3dTake{"phasespace_sample.c3d", 701, 40, 30, 1281},
+                                         C3dTake{"walkingOptiTrack.c3d", 3361, 12, 160, 2996}));
+
+// markers/NAME.npy has the points of c3d/NAME.c3d but those seen under 30 % of the time.
+TEST(RealC3d, HasTheSamplesThatAnotherReaderFound) {
+  for (const std::string name : {"02_01", "03_rolling", "mocap36"}) {
+    const auto file = test::shared_data("c3d/" + name + ".c3d");
+    MOCLEAN_REQUIRE_FILE(file);
+    const Recording take = read_recording(file);
+    const Recording markers = read_recording(test::shared_data("markers/" + name + ".npy"));
+    std::vector<Index> seen;
+    for (Index c = 0; c < take.samples.cols(); ++c)
+      if (10 * take.samples.col(c).array().isNaN().count() <= 7 * take.frames()) seen.push_back(c);
+
+    const Matrix samples = columns_of(take, seen).samples;
+
+    ASSERT_EQ(samples.cols(), markers.samples.cols()) << name;
+    EXPECT_TRUE(((samples.array() == markers.samples.array()) ||
+                 (samples.array().isNaN() && markers.samples.array().isNaN()))
+                    .all())
+        << name;
+  }
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/core/huge_pages.hpp"
 
 namespace moclean {
 namespace {
@@ -30,7 +31,11 @@ std::string read_file(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw FileError(file, "cannot be opened for reading");
   std::string content;
-  if (const auto size = fs::file_size(file, error); !error) content.resize(size);
+  if (const auto size = fs::file_size(file, error); !error) {
+    content.reserve(size);
+    wish_huge_pages(content.data(), size);
+    content.resize(size);
+  }
   stream.read(content.data(), static_cast<std::streamsize>(content.size()));
   content.resize(static_cast<std::size_t>(stream.gcount()));
   // A pipe has no size, and a file may have grown since.

@@ -26,12 +26,13 @@ struct ReadOptions {
 
 /// What files of a format say beside the positions.
 struct FormatContent {
-  bool names = false;       ///< of columns or joints
-  bool frame_rate = false;  ///< a file may still leave it out
-  bool unit = false;        ///< likewise
-  bool up = false;          ///< likewise
-  bool skeleton = false;    ///< and its channels
-  bool gaps = false;        ///< a sample that was not observed can be told from any number
+  bool names = false;             ///< of columns or joints
+  bool frame_rate = false;        ///< a file may still leave it out
+  bool unit = false;              ///< likewise
+  bool up = false;                ///< likewise
+  bool skeleton = false;          ///< and its channels
+  bool gaps = false;              ///< a sample that was not observed can be told from any number
+  bool single_precision = false;  ///< samples are rounded to float, whole points are missing
 };
 
 /// A file format: all that the program knows of it. Each has a pair of files, NAME.hpp and

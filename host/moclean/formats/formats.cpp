@@ -8,6 +8,7 @@
 
 #include "moclean/formats/amc.hpp"
 #include "moclean/formats/bvh.hpp"
+#include "moclean/formats/c3d.hpp"
 #include "moclean/formats/csv.hpp"
 #include "moclean/formats/extension.hpp"
 #include "moclean/formats/npy.hpp"
@@ -16,8 +17,8 @@
 namespace moclean {
 
 std::span<const Format* const> formats() {
-  static constexpr std::array<const Format*, 5> all = {
-      &bvh_format, &amc_format, &trc_format, &csv_format, &npy_format,
+  static constexpr std::array<const Format*, 6> all = {
+      &bvh_format, &amc_format, &c3d_format, &trc_format, &csv_format, &npy_format,
   };
   return all;
 }

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/motion/framed_source.hpp"
 
 namespace moclean {
 namespace {
@@ -91,13 +92,16 @@ Recording excerpt(const Recording& recording, Index first, Index last) {
   if (first < 0 || first >= last || last > recording.frames())
     throw ShapeError(fmt::format("cannot cut frames {}:{} out of a take of {} frames", first, last,
                                  recording.frames()));
-  return rows_of(recording, Eigen::seq(first, last - 1));
+  Recording part = rows_of(recording, Eigen::seq(first, last - 1));
+  if (auto* source = std::any_cast<FramedSource>(&part.source)) source->first += first;
+  return part;
 }
 
 Recording thinned(const Recording& recording, Index every) {
   const Index kept = (recording.frames() - 1) / every + 1;
   Recording result = rows_of(recording, Eigen::seqN(0, kept, every));
   result.frame_rate /= static_cast<double>(every);
+  if (every > 1 && std::any_cast<FramedSource>(&result.source)) result.source.reset();
   return result;
 }
 

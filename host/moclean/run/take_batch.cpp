@@ -3,11 +3,15 @@
 #include <functional>
 #include <numeric>
 
+#include "moclean/motion/framed_source.hpp"
+
 namespace moclean {
 
 std::uint64_t bytes_of(const Recording& take, std::uint64_t copies) {
-  return sizeof(double) * (copies * static_cast<std::uint64_t>(take.samples.size()) +
-                           static_cast<std::uint64_t>(take.channels.size()));
+  const auto* source = std::any_cast<FramedSource>(&take.source);
+  const std::uint64_t others = source ? source->bytes : 0;
+  return others + sizeof(double) * (copies * static_cast<std::uint64_t>(take.samples.size()) +
+                                    static_cast<std::uint64_t>(take.channels.size()));
 }
 
 std::uint64_t TakeBatch::bytes() const {

@@ -8,7 +8,8 @@
 
 namespace moclean {
 
-/// Bytes a take needs: `copies` of its samples, and one of its skeleton's channels.
+/// Bytes a take needs: `copies` of its samples, one of its skeleton's channels, and what its
+/// file is kept for.
 std::uint64_t bytes_of(const Recording& take, std::uint64_t copies);
 
 /// A take on its way through a run, all but what was recorded.
