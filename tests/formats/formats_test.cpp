@@ -57,7 +57,7 @@ TEST(Formats, AreFoundByExtensionInAnyCase) {
 TEST(Formats, AreListedForHelpTextsAndForSentences) {
   EXPECT_EQ(listed_extensions(can_read), ".bvh .amc .trc .csv .npy");
   EXPECT_EQ(any_extension(can_read), ".bvh, .amc, .trc, .csv or .npy");
-  EXPECT_EQ(any_extension(can_write), ".trc, .csv or .npy");
+  EXPECT_EQ(any_extension(can_write), ".bvh, .trc, .csv or .npy");
   EXPECT_EQ(any_extension([](const Format& format) { return format.name == "BVH"; }), ".bvh");
   EXPECT_THAT(any_extension([](const Format&) { return false; }), IsEmpty());
 }
@@ -80,7 +80,8 @@ TEST(Formats, ReadBackWhatTheyWrite) {
   const TemporaryFolder folder;
   const double gap = test::nan;
   for (const Format* format : formats()) {
-    if (!can_read(*format) || !can_write(*format)) continue;
+    // Rotations hold positions to the last digits printed only: see bvh_write_test.cpp.
+    if (!can_read(*format) || !can_write(*format) || has_skeleton(*format)) continue;
     SCOPED_TRACE(format->name);
     const FormatContent& content = format->content;
     const Recording recording{Matrix{{0.1, -2e-300, 1. / 3}, {4, content.gaps ? gap : 5, 1e140}},

@@ -81,8 +81,8 @@ TEST(WriteRecording, ChoosesTheFormatByExtension) {
     write_recording(folder.path() / name, clip);
     EXPECT_EQ(read_recording(folder.path() / name).samples, clip.samples) << name;
   }
-  EXPECT_THAT([&] { write_recording(folder.path() / "x.bvh", clip); },
-              ThrowsMessage<FileError>(HasSubstr("expected a name ending in .trc, .csv or .npy")));
+  EXPECT_THAT([&] { write_recording(folder.path() / "x.amc", clip); },
+              ThrowsMessage<FileError>(HasSubstr("expected a name ending in .bvh, .trc, .csv")));
 }
 
 TEST(WriteRecording, KeepsTheOldFileWhenItFails) {
