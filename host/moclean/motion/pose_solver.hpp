@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include <Eigen/Core>
@@ -81,6 +82,7 @@ class PoseSolver {
   void place(const double* channels);
   void choose_freedoms();
   void aim();
+  void aim_at_children(std::size_t bone);
   void carry(Link& link);
   double distance() const;
   void find_costs(double damping);
