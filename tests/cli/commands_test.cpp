@@ -189,14 +189,14 @@ TEST(Convert, ReportsAMalformedFileWithItsLine) {
   EXPECT_THAT(folder.names(), ElementsAre("bad.csv"));
 }
 
-TEST(Convert, CannotWriteSkeletonFiles) {
+TEST(Convert, WritesRotationsOnlyOverTheirSkeleton) {
   const TemporaryFolder folder;
   const std::string walk = folder.write("walk.csv", synthetic_walk(4));
 
   const Outcome outcome = run({"convert", walk, folder / "walk.bvh"});
 
-  EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("expected .c3d, .csv or .npy"));
+  EXPECT_EQ(outcome.exit_code, 1);
+  EXPECT_THAT(outcome.err, HasSubstr("BVH holds rotations of a skeleton"));
 }
 
 TEST(Info, StatesWhatTheFileHolds) {

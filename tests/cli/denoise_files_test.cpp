@@ -227,8 +227,14 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         Refused{"MissingInput", {"none.csv", "clean.csv"}, 1, "there is no such file"},
         Refused{"FolderWithoutRecordings", {"notes", "clean"}, 1, "holds no recording"},
-        Refused{"SkeletonOutput", {"walk.csv", "clean.bvh"}, 2, "expected .c3d, .csv or .npy"},
-        Refused{"OutputWithoutExtension", {"walk.csv", "clean"}, 2, "expected .c3d, .csv or .npy"},
+        Refused{"SkeletonOutput",
+                {"walk.csv", "clean.bvh"},
+                2,
+                "own skeleton, expected .c3d, .trc, .csv or .npy"},
+        Refused{"OutputWithoutExtension",
+                {"walk.csv", "clean"},
+                2,
+                "expected .bvh, .c3d, .trc, .csv or .npy"},
         Refused{"NoFolderForOutput", {"walk.csv", "none/clean.csv"}, 1, "there is no folder"},
         Refused{"FileAsFolder", {"walk.csv", "walk.csv/"}, 2, "is a file"}),
     [](const auto& test) { return test.param.name; });

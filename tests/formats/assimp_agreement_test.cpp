@@ -7,8 +7,10 @@
 #include <assimp/scene.h>
 #include <gtest/gtest.h>
 
+#include "moclean/core/random.hpp"
 #include "moclean/formats/read_write.hpp"
 
+#include "formats/temporary_folder.hpp"
 #include "support/data.hpp"
 #include "support/matrix.hpp"
 #include "support/tolerance.hpp"
@@ -35,11 +37,7 @@ void place(const aiNode& node, const aiMatrix4x4& parent, const Tracks& tracks, 
     place(*node.mChildren[c], world, tracks, frame, positions);
 }
 
-class AssimpAgreement : public testing::TestWithParam<std::string> {};
-
-TEST_P(AssimpAgreement, GivesTheSameJointPositions) {
-  const std::filesystem::path file = test::debian_take(GetParam());
-  MOCLEAN_REQUIRE_FILE(file);
+void expect_same_positions(const std::filesystem::path& file) {
   Assimp::Importer importer;
   const aiScene* scene = importer.ReadFile(file.string(), 0);
   ASSERT_NE(scene, nullptr) << importer.GetErrorString();
@@ -66,6 +64,28 @@ TEST_P(AssimpAgreement, GivesTheSameJointPositions) {
   EXPECT_EQ(clip.frames(), static_cast<Index>(scene->mAnimations[0]->mDuration) + 1);
   EXPECT_LE(test::largest_difference(clip.samples, expected),
             test::tolerance::single_precision_reader() * expected.cwiseAbs().maxCoeff());
+}
+
+class AssimpAgreement : public testing::TestWithParam<std::string> {};
+
+TEST_P(AssimpAgreement, GivesTheSameJointPositions) {
+  const std::filesystem::path file = test::debian_take(GetParam());
+  MOCLEAN_REQUIRE_FILE(file);
+
+  expect_same_positions(file);
+}
+
+TEST_P(AssimpAgreement, ReadsWhatIsWrittenOfChangedPositions) {
+  const std::filesystem::path file = test::debian_take(GetParam());
+  MOCLEAN_REQUIRE_FILE(file);
+  const test::TemporaryFolder folder;
+  Recording recording = read_recording(file, {.skeleton = {}, .frames = {.first = 5, .last = 200}});
+  Random random(5);
+  for (double& sample : recording.samples.reshaped()) sample += 0.1 * random.normal();
+
+  write_recording(folder.path() / "changed.bvh", recording);
+
+  expect_same_positions(folder.path() / "changed.bvh");
 }
 
 INSTANTIATE_TEST_SUITE_P(DebianTakes, AssimpAgreement,

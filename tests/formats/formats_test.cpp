@@ -57,7 +57,7 @@ TEST(Formats, AreFoundByExtensionInAnyCase) {
 TEST(Formats, AreListedForHelpTextsAndForSentences) {
   EXPECT_EQ(listed_extensions(can_read), ".bvh .amc .c3d .trc .csv .npy");
   EXPECT_EQ(any_extension(can_read), ".bvh, .amc, .c3d, .trc, .csv or .npy");
-  EXPECT_EQ(any_extension(can_write), ".c3d, .trc, .csv or .npy");
+  EXPECT_EQ(any_extension(can_write), ".bvh, .c3d, .trc, .csv or .npy");
   EXPECT_EQ(any_extension([](const Format& format) { return format.name == "BVH"; }), ".bvh");
   EXPECT_THAT(any_extension([](const Format&) { return false; }), IsEmpty());
 }
@@ -86,7 +86,8 @@ Matrix hip_samples(const FormatContent& content) {
 TEST(Formats, ReadBackWhatTheyWrite) {
   const TemporaryFolder folder;
   for (const Format* format : formats()) {
-    if (!can_read(*format) || !can_write(*format)) continue;
+    // Rotations hold positions to the last digits printed only: see bvh_write_test.cpp.
+    if (!can_read(*format) || !can_write(*format) || has_skeleton(*format)) continue;
     SCOPED_TRACE(format->name);
     const FormatContent& content = format->content;
     const Recording recording{

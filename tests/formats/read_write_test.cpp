@@ -82,8 +82,8 @@ TEST(WriteRecording, ChoosesTheFormatByExtension) {
     EXPECT_EQ(read_recording(folder.path() / name).samples, clip.samples) << name;
   }
   EXPECT_THAT(
-      [&] { write_recording(folder.path() / "x.bvh", clip); },
-      ThrowsMessage<FileError>(HasSubstr("expected a name ending in .c3d, .trc, .csv or .npy")));
+      [&] { write_recording(folder.path() / "x.amc", clip); },
+      ThrowsMessage<FileError>(HasSubstr("expected a name ending in .bvh, .c3d, .trc, .csv")));
 }
 
 TEST(WriteRecording, KeepsTheOldFileWhenItFails) {

@@ -1,6 +1,7 @@
 #include "moclean/formats/bvh.hpp"
 
 #include <algorithm>
+#include <any>
 #include <array>
 #include <numbers>
 #include <utility>
@@ -117,6 +118,7 @@ class BvhParser {
   void frames() {
     scanner_.expect("Frames:");
     const Index frames = scanner_.count();
+    document_.stated_frames = frames;
     if (frames == 0) scanner_.fail("expected at least one frame, found 'Frames: 0'");
     scanner_.expect("Frame");
     scanner_.expect("Time:");
@@ -124,6 +126,9 @@ class BvhParser {
     if (seconds <= 0) scanner_.fail("expected a positive frame time");
     scanner_.expect_line_end();
     document_.frame_time = seconds;
+    scanner_.at_end();  // to the first frame
+    document_.motion = text_.substr(document_.hierarchy.size());
+    document_.rows = document_.motion.size() - scanner_.bytes_left();
     result_.frame_rate = rate_from_period(seconds);
 
     // Memory for no more frames than the rest of the file can hold, two bytes a number at least,
@@ -136,6 +141,7 @@ class BvhParser {
       if (scanner_.at_end()) scanner_.fail(fmt::format("expected {} frames, found {}", frames, f));
       frame(result_.channels.row(f).data(), scales);
     }
+    document_.all_frames = document_.frames = frames;
   }
 
   void frame(double* values, const std::vector<double>& scales) {
@@ -168,8 +174,12 @@ class BvhParser {
 };
 
 Recording read_bvh(std::string_view content, const std::filesystem::path& file,
-                   const ReadOptions&) {
-  return joint_positions(parse_bvh(content, file));
+                   const ReadOptions& options) {
+  SkeletonMotion motion = parse_bvh(content, file);
+  auto& document = std::any_cast<BvhDocument&>(motion.source);
+  document.first_frame = options.frames.first.value_or(0);
+  document.frames = options.frames.last.value_or(document.all_frames) - document.first_frame;
+  return joint_positions(std::move(motion));
 }
 
 }  // namespace
@@ -181,9 +191,12 @@ SkeletonMotion parse_bvh(std::string_view text, const std::filesystem::path& fil
 constinit const Format bvh_format = {
     .name = "BVH",
     .extension = ".bvh",
-    .notes = "any hierarchy, channels and rotation order; becomes joint positions",
+    .notes =
+        "any hierarchy, channels and rotation order; becomes joint positions, and rotations again "
+        "when a recording of a BVH file is written",
     .content = {.names = true, .frame_rate = true, .skeleton = true},
     .read = read_bvh,
+    .write = write_bvh,
 };
 
 }  // namespace moclean

@@ -49,9 +49,20 @@ bool wants_folder(const OutputRequest& request) {
          names_folder(request.output);
 }
 
+bool holds_any_samples(const Format& format) { return can_write(format) && !has_skeleton(format); }
+
+// Rotations can be written only over the file that they came from.
+void require_rotations(const fs::path& input, const fs::path& output) {
+  if (!is_of_format(output, has_skeleton) || format_of(input) == format_of(output)) return;
+  throw ArgumentError(fmt::format(
+      "{}: cannot hold the positions of {} without rotations of its own skeleton, expected {}",
+      output.string(), input.string(), any_extension(holds_any_samples)));
+}
+
 std::string extension_of_result(const fs::path& input, const std::string& format) {
   if (!format.empty()) return "." + format;
-  return is_of_format(input, can_write) ? extension(input) : std::string(npy_format.extension);
+  return is_of_format(input, holds_any_samples) ? extension(input)
+                                                : std::string(npy_format.extension);
 }
 
 std::vector<fs::path> reports_in(const fs::path& folder, const std::vector<fs::path>& results) {
@@ -66,16 +77,18 @@ void require_writable_report(const fs::path& file) {
   require_writable(file);
 }
 
-std::vector<fs::path> files_in(const fs::path& folder, const OutputRequest& request) {
+std::vector<fs::path> files_in(const fs::path& folder, const OutputRequest& request,
+                               const std::string& format) {
   std::map<fs::path, fs::path> inputs;
   std::vector<fs::path> results;
   for (const fs::path& input : request.files) {
-    const fs::path name = input.stem().string() + extension_of_result(input, request.format);
+    const fs::path name = input.stem().string() + extension_of_result(input, format);
     const auto [other, first] = inputs.emplace(input.stem(), input);
     if (!first)
       throw ArgumentError(fmt::format("{} and {} would both become {}; give them in two calls",
                                       other->second.string(), input.string(),
                                       (folder / input.stem()).string()));
+    require_rotations(input, name);
     results.push_back(folder / name);
   }
   return results;
@@ -129,11 +142,12 @@ void require_writable_recording(const fs::path& file) {
 OutputPlan plan_outputs(const OutputRequest& request) {
   OutputPlan plan;
   if (wants_folder(request)) {
-    plan.clean = files_in(request.output, request);
+    plan.clean = files_in(request.output, request, request.format);
     plan.folders.push_back(request.output);
     for (const SideOutput& side : side_outputs(request, plan)) {
       if (side.requested.empty()) continue;
-      side.files = files_in(side.requested, request);
+      const bool has_rotations = is_of_format("x." + request.format, has_skeleton);
+      side.files = files_in(side.requested, request, has_rotations ? "" : request.format);
       plan.folders.push_back(side.requested);
     }
     if (!request.report.empty()) {
@@ -144,10 +158,14 @@ OutputPlan plan_outputs(const OutputRequest& request) {
   } else {
     plan.clean = {request.output};
     require_format(request.output, request.format);
+    require_rotations(request.inputs.front(), request.output);
     for (const SideOutput& side : side_outputs(request, plan)) {
       if (side.requested.empty()) continue;
       side.files = {side.requested};
       require_format(side.requested, request.format);
+      if (!is_of_format(side.requested, holds_any_samples))
+        throw ArgumentError(fmt::format("{}: holds rotations, {} needs {}", side.requested.string(),
+                                        side.option, any_extension(holds_any_samples)));
     }
     if (!request.report.empty()) {
       plan.reports = {request.report};

@@ -32,7 +32,8 @@ struct OutputRequest {
 ///
 /// `output` is a folder if there are several inputs or one that is a folder, if it ends with a
 /// slash, or if it is a folder already. A file in it is named after its input; its format is
-/// `format`, else the input's if that can be written, else .npy; a report in its folder is .html.
+/// `format`, else the input's if that can be written and
+/// holds any samples, else .npy (for BVH, too); a report in its folder is .html.
 /// Throws ArgumentError for an extension that cannot be written and for two results of the same
 /// name, FileError for a place that cannot be written.
 OutputPlan plan_outputs(const OutputRequest& request);
