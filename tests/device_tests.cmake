@@ -53,8 +53,8 @@ function(moclean_oclgrind name)
 endfunction()
 
 moclean_oclgrind(linalg
-  SMALL Banded.* *PenaltyIsThat*/1 Norms.* *GroupNorms.A*WG64 ScaleRows.* *own_3x5 *SymmetricEigenTest.Decomp*/3 *GroupEigenTest*/WG4_n5 *GroupProducts*/WG16_3x5
-  ALL Norms.* *GroupNorms.A*WG64 ScaleRows.* *own_3x5 *own_17x1 *own_25x93 *SymmetricEigenTest.Decomp*/1 *SymmetricEigenTest.Decomp*/3
+  SMALL Banded.* *PenaltyIsThat*/1 Norms.* *GroupNorms.A*WG64 ScaleRows.* *ProductsTest.*own_3x5 *SymmetricEigenTest.Decomp*/3 *GroupEigenTest*/WG4_n5 *GroupProducts*/WG16_3x5
+  ALL Norms.* *GroupNorms.A*WG64 ScaleRows.* *ProductsTest.*own_3x5 *ProductsTest.*own_17x1 *ProductsTest.*own_25x93 *SymmetricEigenTest.Decomp*/1 *SymmetricEigenTest.Decomp*/3
       *SymmetricEigenTest.Decomp*/9 *GroupEigenTest*/WG4_n5 *GroupEigenTest*/WG64_n16 GroupEigen.DecomposesABatch*
       *GroupProducts*/WG16_3x5 *GroupProductsTest*/WG64_17x1 *GroupProductsTest.Gram*/WG128_25x93
       *GroupProductsTest.R*/WG128_25x93)

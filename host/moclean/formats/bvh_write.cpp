@@ -98,10 +98,11 @@ class BvhWriter {
   // rate is another one.
   void head(std::string_view head) {
     const auto put = [&](std::string_view keyword, const std::string& value, bool is_same) {
-      const auto found = std::ranges::search(
-          head, keyword, [](char a, char b) { return (a | 0x20) == (b | 0x20); });
-      text_.append(head.begin(), found.end());
-      NumberWalk walk({found.end(), head.end()});
+      const auto found = std::search(head.begin(), head.end(), keyword.begin(), keyword.end(),
+                                     [](char a, char b) { return (a | 0x20) == (b | 0x20); });
+      const auto end = found == head.end() ? found : found + static_cast<Index>(keyword.size());
+      text_.append(head.begin(), end);
+      NumberWalk walk({end, head.end()});
       text_ += walk.gap();
       text_ += is_same ? walk.text() : std::string_view(value);
       head = walk.rest();
