@@ -15,7 +15,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 
 Matrix3d rotation(const std::array<int, 3>& axes, const Vector3d& angles) {
   Matrix3d product = Matrix3d::Identity();

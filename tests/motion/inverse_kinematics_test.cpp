@@ -19,7 +19,7 @@ using enum Channel;
 using test::largest_difference;
 using test::same_bits;
 
-constexpr double pi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 
 // What the issue asks of joints, of the body's size; a search that has converged is far below.
