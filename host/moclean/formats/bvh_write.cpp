@@ -16,6 +16,7 @@
 #include "moclean/formats/bvh.hpp"
 #include "moclean/formats/frame_rate.hpp"
 #include "moclean/formats/plain_number.hpp"
+#include "moclean/formats/written_text.hpp"
 #include "moclean/motion/inverse_kinematics.hpp"
 
 namespace moclean {
@@ -56,17 +57,14 @@ class NumberWalk {
 
 // As many decimals as the first numbers of the file have, and no fewer than keep angles and places
 // of a body to 1e-5 of its size.
-int decimals_of(std::string_view rows) {
+int decimals_in(std::string_view rows) {
   constexpr int numbers = 4000;
   std::size_t most = 4;
   NumberWalk walk(rows);
   for (int n = 0; n < numbers; ++n) {
     walk.gap();
     if (walk.text().empty()) break;
-    const std::size_t point = walk.text().find('.');
-    if (point == std::string_view::npos) continue;
-    const std::string_view digits = walk.text().substr(point + 1);
-    most = std::max(most, std::min(digits.find_first_not_of("0123456789"), digits.size()));
+    most = std::max(most, decimals_of(walk.text()).value_or(0));
   }
   return static_cast<int>(std::min<std::size_t>(most, 12));
 }
@@ -83,7 +81,7 @@ class BvhWriter {
   void write(const Matrix& channels) {
     const std::string_view motion = document_.motion;
     const std::string_view rows = motion.substr(document_.rows);
-    decimals_ = decimals_of(rows);
+    decimals_ = decimals_in(rows);
     text_ = document_.hierarchy;
     head(motion.substr(0, document_.rows));
     if (document_.frames == recording_.frames())
@@ -128,7 +126,7 @@ class BvhWriter {
         else
           put_number(value / scales_[c]);
       }
-      flush_if_full();
+      write_if_full(file_, text_);
     }
     const std::string_view rest = walk.rest();
     const bool is_all = document_.first_frame + document_.frames == document_.all_frames;
@@ -142,7 +140,7 @@ class BvhWriter {
         put_number(frame[static_cast<Index>(c)] / scales_[c]);
       }
       text_ += '\n';
-      flush_if_full();
+      write_if_full(file_, text_);
     }
   }
 
@@ -152,13 +150,6 @@ class BvhWriter {
     const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value,
                                    std::chars_format::fixed, decimals_);
     text_.append(digits.data(), end.ptr);
-  }
-
-  void flush_if_full() {
-    constexpr std::size_t full = 1 << 18;  // stays in the cache between being made and written
-    if (text_.size() < full) return;
-    file_.write(text_);
-    text_.clear();
   }
 
   AtomicFile& file_;

@@ -14,6 +14,7 @@
 #include "moclean/formats/frame_rate.hpp"
 #include "moclean/formats/row_collector.hpp"
 #include "moclean/formats/text_scanner.hpp"
+#include "moclean/formats/written_text.hpp"
 
 namespace moclean {
 namespace {
@@ -248,9 +249,8 @@ void write_csv(AtomicFile& file, const Recording& clip) {
       throw FileError(file.target(), "cannot be written: the column name " + excerpt(name) +
                                          " holds a line break");
   file.write(head(clip));
-  constexpr std::size_t chunk = 1 << 18;  // stays in the cache between being made and written
   const Index columns = clip.samples.cols();
-  std::vector<char> text(chunk + static_cast<std::size_t>(columns) * (longest_number + 1) + 1);
+  std::vector<char> text(text_chunk + static_cast<std::size_t>(columns) * (longest_number + 1) + 1);
   char* end = text.data();
   const auto flush = [&] {
     file.write({text.data(), static_cast<std::size_t>(end - text.data())});
@@ -262,7 +262,7 @@ void write_csv(AtomicFile& file, const Recording& clip) {
       end = put_number(end, clip.samples(f, c));
     }
     *end++ = '\n';
-    if (end - text.data() >= static_cast<std::ptrdiff_t>(chunk)) flush();
+    if (end - text.data() >= static_cast<std::ptrdiff_t>(text_chunk)) flush();
   }
   flush();
 }

@@ -15,18 +15,11 @@
 #include "moclean/formats/text_scanner.hpp"
 #include "moclean/formats/trc.hpp"
 #include "moclean/formats/trc_text.hpp"
+#include "moclean/formats/written_text.hpp"
 #include "moclean/motion/unit.hpp"
 
 namespace moclean {
 namespace {
-
-constexpr std::size_t chunk = 1 << 18;  // stays in the cache between being made and written
-
-void flush_if_full(AtomicFile& file, std::string& text) {
-  if (text.size() < chunk) return;
-  file.write(text);
-  text.clear();
-}
 
 bool is_same_sample(double a, double b) {
   return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b) ||
@@ -54,7 +47,7 @@ class TrcRewriter {
       if (is_wanted)
         text_ += std::string_view(document_.text).substr(rest, lines.position() - rest);
       frame += is_row;
-      flush_if_full(file_, text_);
+      write_if_full(file_, text_);
     }
     file_.write(text_);
   }
@@ -68,11 +61,9 @@ class TrcRewriter {
     for (TrcLines lines(document_.text, document_.rows); looked_at < 1000 && lines.next();) {
       Index column = -2;
       for (TrcCells cells(lines.line()); cells.next() && column < samples_.cols(); ++column) {
-        const std::size_t point = cells.cell().find('.');
-        if (column < 0 || point == std::string_view::npos) continue;
-        const std::string_view digits = cells.cell().substr(point + 1);
-        const std::size_t count = std::min(digits.find_first_not_of("0123456789"), digits.size());
-        decimals_ = std::max(decimals_, static_cast<int>(std::min<std::size_t>(count, 15)));
+        const auto count = decimals_of(cells.cell());
+        if (column < 0 || !count) continue;
+        decimals_ = std::max(decimals_, static_cast<int>(std::min<std::size_t>(*count, 15)));
         ++looked_at;
       }
     }
@@ -187,7 +178,7 @@ void write_anew(AtomicFile& file, const Recording& recording) {
       text.append(number.data(), end);
     }
     text += '\n';
-    flush_if_full(file, text);
+    write_if_full(file, text);
   }
   file.write(text);
 }

@@ -24,10 +24,6 @@ constexpr double smallest_turn = 1e-7;  // of a step worth another: the next is 
 constexpr double level = 1e-8;          // share by which steps lessen what noise leaves
 constexpr int most_steps = 30;
 
-Matrix3d about(int axis, double angle) {
-  return Eigen::AngleAxisd(angle, Vector3d::Unit(axis)).toRotationMatrix();
-}
-
 // The rotation that brings arms nearest to their aims, given sum(aim arm') (Kabsch 1976).
 Matrix3d best_rotation(const Matrix3d& products) {
   const Eigen::JacobiSVD<Matrix3d> svd(products, Eigen::ComputeFullU | Eigen::ComputeFullV);
@@ -36,6 +32,10 @@ Matrix3d best_rotation(const Matrix3d& products) {
 }
 
 }  // namespace
+
+Matrix3d PoseSolver::turn_about(int axis, double angle) {
+  return Eigen::AngleAxisd(angle, Vector3d::Unit(axis)).toRotationMatrix();
+}
 
 PoseSolver::PoseSolver(const Skeleton& skeleton)
     : links_(skeleton.bones.size()), children_(links_.size()), kept_(links_.size()) {
@@ -150,7 +150,7 @@ void PoseSolver::place(const double* channels) {
         pose.travel[axis] += value;
         continue;
       }
-      pose.local = pose.local * about(axis, value);
+      pose.local = pose.local * turn_about(axis, value);
       if (turns < 3) pose.angles[turns++] = value;
     }
     link.freedom = Freedom::none;

@@ -32,6 +32,8 @@ class PoseSolver {
  private:
   enum class Freedom { none, about_axes, any };
 
+  static Eigen::Matrix3d turn_about(int axis, double angle);
+
   // What motions of a limb cost: of d of its base and w of its orientation,
   //   d' dd d + 2 d' dw w + w' ww w + 2 d' gd + 2 w' gw.
   struct Cost {

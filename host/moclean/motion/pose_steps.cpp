@@ -15,10 +15,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-Matrix3d turn_about(int axis, double angle) {
-  return Eigen::AngleAxisd(angle, Vector3d::Unit(axis)).toRotationMatrix();
-}
-
 // cross(a) b = a x b
 Matrix3d cross(const Vector3d& a) {
   Matrix3d matrix;
