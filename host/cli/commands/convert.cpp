@@ -8,6 +8,7 @@
 #include "moclean/formats/read_write.hpp"
 #include "moclean/run/inputs.hpp"
 #include "moclean/run/outputs.hpp"
+#include "moclean/run/run_report.hpp"
 
 #include "cli/commands/commands.hpp"
 #include "cli/options/input_options.hpp"
@@ -25,6 +26,8 @@ ExitCode run(const ConvertOptions& options) {
   require_writable_recording(options.output);
   const Recording clip = read_recording(options.input, options.reading);
   write_recording(options.output, clip);
+  for (const std::string& line : note_lines(options.input, clip.notes))
+    fmt::print(stderr, "moclean: {}\n", line);
   fmt::print("{} -> {}: {} frames x {} columns\n", options.input.string(), options.output.string(),
              clip.frames(), clip.samples.cols());
   return ExitCode::done;

@@ -75,6 +75,12 @@ void print_report(const RunReport& run, const OutputPlan& plan, const BackendRep
   if (backend.profile) fmt::print("\n{}", profile_table(*backend.profile));
 }
 
+void tell_notes(const std::vector<TakeReport>& takes) {
+  for (const TakeReport& take : takes)
+    for (const std::string& line : note_lines(take.file, take.notes))
+      fmt::print(stderr, "moclean: {}\n", line);
+}
+
 void warn_of_unobserved(const std::vector<TakeReport>& takes) {
   for (const TakeReport& take : takes)
     if (!take.unobserved.empty()) fmt::print(stderr, "moclean: {}\n", unobserved_line(take));
@@ -165,6 +171,7 @@ ExitCode run(DenoiseOptions options) {
     opened.report.profile = profile_of(*opened.device, options, report.seconds.solve);
   if (!options.json.empty()) write_json(options.json, json_record(options, opened.report, report));
   if (options.reports()) print_report(report, job.outputs, opened.report);
+  tell_notes(report.takes);
   warn_of_unobserved(report.takes);
   tell_of_changes(report.takes);
   return warn_if_not_converged(report.takes);

@@ -6,6 +6,7 @@
 
 #include "moclean/formats/formats.hpp"
 #include "moclean/run/inputs.hpp"
+#include "moclean/run/run_report.hpp"
 
 #include "cli/commands/commands.hpp"
 #include "cli/options/input_options.hpp"
@@ -40,6 +41,9 @@ Json info_record(const std::filesystem::path& file, const Recording& clip) {
   record["duration"] =
       has_rate ? Json(static_cast<double>(clip.frames()) / clip.frame_rate) : Json(nullptr);
   record["missing"] = clip.samples.array().isNaN().count();
+  record["layout"] = clip.notes.layout.empty() ? Json(nullptr) : Json(clip.notes.layout);
+  record["passed_through"] = clip.notes.passed_through;
+  record["warnings"] = clip.notes.warnings;
   return record;
 }
 
@@ -59,6 +63,9 @@ void print_info(const std::filesystem::path& file, const Recording& clip) {
   }
   fmt::print("unit      {}\n", clip.unit.empty() ? "unknown" : clip.unit);
   fmt::print("missing   {} samples\n", clip.samples.array().isNaN().count());
+  if (!clip.notes.layout.empty()) fmt::print("layout    {}\n", clip.notes.layout);
+  for (const std::string& line : note_lines(file, clip.notes))
+    fmt::print(stderr, "moclean: {}\n", line);
 }
 
 ExitCode run(const InfoOptions& options) {

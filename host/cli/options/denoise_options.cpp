@@ -64,7 +64,8 @@ void add_files(CLI::App& command, DenoiseOptions& options) {
       ->type_name("FORMAT")
       ->group(files_group);
   add_input_options(command, options.reading);
-  for (const char* name : {"--frames", "--rate", "--skeleton"})
+  for (const char* name :
+       {"--frames", "--rate", "--skeleton", "--layout", "--columns", "--missing"})
     command.get_option(name)->group(files_group);
 }
 

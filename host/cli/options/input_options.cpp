@@ -1,6 +1,7 @@
 #include "cli/options/input_options.hpp"
 
 #include <charconv>
+#include <map>
 #include <optional>
 #include <string_view>
 
@@ -57,10 +58,39 @@ void add_file_options(CLI::App& command, double& rate, std::filesystem::path& sk
       ->type_name("FILE.asf");
 }
 
+void add_column_options(CLI::App& command, ReadOptions& options) {
+  const std::map<std::string, ColumnLayout> layouts = {{"points3", ColumnLayout::points3},
+                                                       {"points2", ColumnLayout::points2},
+                                                       {"plain", ColumnLayout::plain}};
+  auto* layout =
+      command
+          .add_option_function<std::string>(
+              "--layout",
+              [&options, layouts](const std::string& name) { options.layout = layouts.at(name); },
+              "What the columns of tables and arrays are, whatever their names: points "
+              "of three coordinates, of two, or plain channels")
+          ->check(CLI::IsMember({"points3", "points2", "plain"}))
+          ->type_name("LAYOUT");
+  command
+      .add_option("--columns", options.columns,
+                  "What every single column is, from left to right (docs/formats.md): t,(xyz)*")
+      ->excludes(layout)
+      ->type_name("SPEC");
+  command
+      .add_option(
+          "--missing", options.missing,
+          "A number that stands for a missing sample; may be given again. 0 is one where all "
+          "coordinates of a point are 0")
+      ->type_size(1)
+      ->allow_extra_args(false)
+      ->type_name("VALUE");
+}
+
 void add_input_options(CLI::App& command, ReadOptions& options) {
   add_frames_option(command, options.frames,
                     "Use frames A up to B - 1 only, counted from 0; A or B may be left out");
   add_file_options(command, options.rate, options.skeleton);
+  add_column_options(command, options);
 }
 
 }  // namespace moclean::cli

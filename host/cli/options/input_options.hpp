@@ -24,7 +24,10 @@ void add_frames_option(CLI::App& command, FrameRange& frames, const std::string&
 /// --rate and --skeleton: what files do not say themselves.
 void add_file_options(CLI::App& command, double& rate, std::filesystem::path& skeleton);
 
-/// --frames, --rate and --skeleton.
+/// --layout, --columns and --missing: how the columns of tables and arrays become samples.
+void add_column_options(CLI::App& command, ReadOptions& options);
+
+/// --frames, and all those.
 void add_input_options(CLI::App& command, ReadOptions& options);
 
 }  // namespace moclean::cli

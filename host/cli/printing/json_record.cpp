@@ -113,6 +113,9 @@ Json take_record(const TakeReport& take) {
   record["segments"] = Json::array();
   for (const DenoisedSegment& segment : take.segments)
     record["segments"].push_back(segment_record(segment));
+  if (!take.notes.layout.empty()) record["layout"] = take.notes.layout;
+  if (!take.notes.warnings.empty()) record["warnings"] = take.notes.warnings;
+  if (!take.notes.passed_through.empty()) record["passed_through"] = take.notes.passed_through;
   if (!take.unobserved.empty()) record["unobserved_columns"] = take.unobserved;
   if (take.truth)
     record["truth"] = {{"file", take.truth->file.string()},

@@ -1,6 +1,7 @@
 #include "moclean/backend/backend.hpp"
 
 #include <cmath>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -41,6 +42,17 @@ void FinishedCount::operator()(Index more) {
   const std::lock_guard lock(reporting_);
   progress_.finished += more;
   if (monitor_.report) monitor_.report(progress_);
+}
+
+Solution room_for_solution(const SegmentBatch& data, const Method& method) {
+  Solution solution{SegmentBatch(data.columns(), data.first_rows()),
+                    SegmentBatch(data.columns(), data.first_rows()),
+                    std::vector<SegmentOutcome>(static_cast<std::size_t>(data.segments()))};
+  if (tells_trust(method)) {
+    solution.trusted.emplace(data.columns(), data.first_rows());
+    solution.deviation.emplace(data.columns(), data.first_rows());
+  }
+  return solution;
 }
 
 void require_finite(const SegmentBatch& data) { require_entries(data, false); }

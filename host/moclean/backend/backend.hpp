@@ -53,6 +53,9 @@ void require_finite(const SegmentBatch& data);
 /// anything.
 void require_usable(const Problem& problem, const Method& method);
 
+/// Room for the solution of a batch, with the parts that the method tells; all zero.
+Solution room_for_solution(const SegmentBatch& data, const Method& method);
+
 /// What decides how work is best put together for a backend. No result depends on it.
 struct BackendTraits {
   Index least_segments = 64;  ///< at once, to keep it busy

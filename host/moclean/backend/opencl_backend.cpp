@@ -221,13 +221,7 @@ Solution OpenClBackend::solve(const Problem& problem, const Method& method,
       method);
   require_usable(problem, method);
   const SegmentBatch& data = problem.data;
-  Solution solution{SegmentBatch(data.columns(), data.first_rows()),
-                    SegmentBatch(data.columns(), data.first_rows()),
-                    std::vector<SegmentOutcome>(static_cast<std::size_t>(data.segments()))};
-  if (tells_trust(method)) {
-    solution.trusted.emplace(data.columns(), data.first_rows());
-    solution.deviation.emplace(data.columns(), data.first_rows());
-  }
+  Solution solution = room_for_solution(data, method);
   FinishedCount counted(monitor, data.segments());
   const auto finished = [&](Index more) { counted(more); };
   prepare(method);

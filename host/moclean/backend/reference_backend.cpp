@@ -46,15 +46,7 @@ Solution ReferenceBackend::solve(const Problem& problem, const Method& method,
   std::visit([](const auto& m) { check(m); }, method);
   require_usable(problem, method);
   const SegmentBatch& data = problem.data;
-
-  Solution solution;
-  solution.low_rank = SegmentBatch(data.columns(), data.first_rows());
-  solution.sparse = SegmentBatch(data.columns(), data.first_rows());
-  if (tells_trust(method)) {
-    solution.trusted.emplace(data.columns(), data.first_rows());
-    solution.deviation.emplace(data.columns(), data.first_rows());
-  }
-  solution.segments.resize(static_cast<std::size_t>(data.segments()));
+  Solution solution = room_for_solution(data, method);
   FinishedCount finished(monitor, data.segments());
 
   for_each_index(data.segments(), jobs_, [&](Index b) {

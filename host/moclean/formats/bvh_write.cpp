@@ -14,6 +14,7 @@
 
 #include "moclean/core/error.hpp"
 #include "moclean/formats/bvh.hpp"
+#include "moclean/formats/formats.hpp"
 #include "moclean/formats/frame_rate.hpp"
 #include "moclean/formats/plain_number.hpp"
 #include "moclean/formats/written_text.hpp"
@@ -163,7 +164,8 @@ class BvhWriter {
 [[noreturn]] void fail_without_skeleton(const AtomicFile& file) {
   throw FileError(file.target(),
                   "cannot be written: BVH holds rotations of a skeleton, and only a recording read "
-                  "from a BVH file has both; positions go into .csv, .npy or .trc");
+                  "from a BVH file has both; positions go into " +
+                      any_extension(holds_any_samples));
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
-#include "moclean/core/huge_pages.hpp"
+#include "moclean/core/large_memory.hpp"
 
 namespace moclean {
 namespace {

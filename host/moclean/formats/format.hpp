@@ -15,6 +15,14 @@ struct FrameRange {
   std::optional<Index> last;
 };
 
+/// How the columns of tables and arrays become samples.
+enum class ColumnLayout {
+  automatic,  ///< by their names, or the shape of the array
+  points3,    ///< x, y, z of a point, and so on, whatever the names
+  points2,    ///< x, y of a point, and so on
+  plain       ///< every column by itself
+};
+
 /// How a recording is read: what its file does not say, and which part of it is wanted.
 struct ReadOptions {
   /// .asf: that of an .amc, else looked for in the .amc's folder; of other files without a skeleton
@@ -22,6 +30,10 @@ struct ReadOptions {
   std::filesystem::path skeleton;
   double rate = 0;         ///< Hz for files that state none; 0: leave unknown
   FrameRange frames = {};  ///< formats read all; see read_recording()
+
+  ColumnLayout layout = ColumnLayout::automatic;
+  std::string columns = {};          ///< what every column is, see parse_column_roles(); or empty
+  std::vector<double> missing = {};  ///< numbers that stand for a sample that was not observed
 };
 
 /// What files of a format say beside the positions.

@@ -21,6 +21,11 @@ inline bool can_read(const Format& format) { return format.read != nullptr; }
 inline bool can_write(const Format& format) { return format.write != nullptr; }
 inline bool has_skeleton(const Format& format) { return format.content.skeleton; }
 
+/// Whether positions can be written without rotations of a skeleton that makes them.
+inline bool holds_any_samples(const Format& format) {
+  return can_write(format) && !has_skeleton(format);
+}
+
 /// Whether the extension of a file stands for a format of which `trait` is true.
 bool is_of_format(const std::filesystem::path& file, FormatTrait trait);
 

@@ -8,6 +8,7 @@
 #include "moclean/core/error.hpp"
 #include "moclean/formats/asf.hpp"
 #include "moclean/formats/formats.hpp"
+#include "moclean/formats/missing_marks.hpp"
 
 namespace moclean {
 namespace {
@@ -25,6 +26,8 @@ Recording read_recording(const std::filesystem::path& file, const ReadOptions& o
     throw FileError(file, "expected a file ending in " + any_extension(can_read));
   Recording recording = format->read(read_file(file), file, options);
   if (recording.frame_rate == 0) recording.frame_rate = options.rate;
+  apply_missing_marks(options.missing, recording);
+  warn_of_marks(recording);
   if (!recording.skeleton && !options.skeleton.empty()) give_skeleton(options.skeleton, recording);
   if (!options.frames.first && !options.frames.last) return recording;
   return select_frames(recording, options.frames, file);

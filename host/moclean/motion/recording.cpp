@@ -41,18 +41,18 @@ ChannelName split(std::string_view name) {
   return {};
 }
 
-// The joint of the three columns from `first` on, if they are its x, y and z, in this order; else
-// empty.
-std::string_view joint_name(const std::vector<std::string>& columns, std::size_t first) {
-  if (first + axes.size() > columns.size()) return {};
+// The joint that begins with a column, if that is its x and others follow in this order.
+Joint joint_at(const std::vector<std::string>& columns, std::size_t first) {
   const ChannelName x = split(columns[first]);
-  for (std::size_t i = 0; i < axes.size(); ++i) {
+  Index count = 0;
+  for (std::size_t i = 0; i < axes.size() && first + i < columns.size(); ++i, ++count) {
     const ChannelName own = split(columns[first + i]);
     if (own.axis != static_cast<char>('x' + static_cast<char>(i)) || own.joint != x.joint ||
         own.separator != x.separator || own.axis_first != x.axis_first)
-      return {};
+      break;
   }
-  return x.joint;
+  if (count < 2) return {columns[first], static_cast<Index>(first), 1};
+  return {std::string(x.joint), static_cast<Index>(first), count};
 }
 
 // Some frames, with all that is known of them.
@@ -62,6 +62,7 @@ Recording rows_of(const Recording& recording, const Rows& rows) {
   part.skeleton = recording.skeleton;
   if (recording.channels.size() > 0) part.channels = recording.channels(rows, Eigen::all);
   part.source = recording.source;
+  part.notes = recording.notes;
   return part;
 }
 
@@ -70,11 +71,8 @@ Recording rows_of(const Recording& recording, const Rows& rows) {
 std::vector<Joint> joints(const Recording& recording) {
   std::vector<Joint> found;
   for (std::size_t column = 0; column < recording.columns.size();) {
-    const std::string_view name = joint_name(recording.columns, column);
-    const Index width = name.empty() ? 1 : 3;
-    found.push_back({name.empty() ? recording.columns[column] : std::string(name),
-                     static_cast<Index>(column), width});
-    column += static_cast<std::size_t>(width);
+    found.push_back(joint_at(recording.columns, column));
+    column += static_cast<std::size_t>(found.back().columns);
   }
   return found;
 }
@@ -132,6 +130,7 @@ Recording joint_positions(SkeletonMotion motion) {
   recording.skeleton = std::move(motion.skeleton);
   recording.channels = std::move(motion.channels);
   recording.source = std::move(motion.source);
+  recording.notes.warnings = std::move(motion.warnings);
   return recording;
 }
 

@@ -13,6 +13,14 @@ namespace moclean {
 /// The axis that points upwards.
 enum class UpAxis { x, y, z };
 
+/// What reading a file found out that its user should hear of.
+struct ReadingNotes {
+  std::string layout = {};                 ///< how the columns were understood, and why
+  std::vector<std::string> warnings = {};  ///< sentences, without the file's name
+  std::vector<std::string> passed_through =
+      {};  ///< columns of the file that are no samples; kept in the source as they are
+};
+
 /// A recording and all that its file tells: one row of samples per frame, one column per channel,
 /// what they are, and what the file needs to be written again.
 ///
@@ -36,19 +44,22 @@ struct Recording {
   /// (named in its header); empty where that is nothing.
   std::any source = {};
 
+  ReadingNotes notes = {};
+
   Index frames() const { return samples.rows(); }
 };
 
-/// Channels that belong together: the x, y, z of one joint or marker, or a single column.
+/// Channels that belong together: the x, y, z of one joint or marker, the x, y of a point in a
+/// picture, or a single column.
 struct Joint {
   std::string name;
   Index first_column = 0;
-  Index columns = 3;  ///< 3, or 1 for a channel that stands alone
+  Index columns = 3;  ///< 3, 2, or 1 for a channel that stands alone
 };
 
 /// Splits the columns of a recording into joints. Three neighbours named `N.x N.y N.z` are joint
-/// `N`, as are those of other tools: `N_x`, `N-x`, `N:x`, `N x`, `N.X`, `x.N`. Any other column is
-/// a joint of its own.
+/// `N`, as are those of other tools: `N_x`, `N-x`, `N:x`, `N x`, `N.X`, `x.N`. Two that have no z
+/// behind them are a joint of two columns. Any other column is a joint of its own.
 std::vector<Joint> joints(const Recording& recording);
 
 /// Names for `count` columns of a file that has none: `joint0.x joint0.y joint0.z joint1.x ...`

@@ -52,6 +52,7 @@ struct SkeletonMotion {
   double frame_rate = 0;  ///< Hz; 0 where unknown
   std::string unit;       ///< of lengths; empty where the file does not state it
   std::any source = {};   ///< see Recording::source
+  std::vector<std::string> warnings = {};  ///< see ReadingNotes
 };
 
 /// Joint positions of every frame, [frames x 3 bones], in the unit of the skeleton's offsets.

@@ -189,6 +189,7 @@ class Run {
 
   void record(const Recording& clip, const TakeInHand& take) {
     TakeReport& report = report_.takes[take.index];
+    report.notes = clip.notes;
     report.unit = clip.unit;
     report.frames = clip.frames();
     report.columns = clip.samples.cols();

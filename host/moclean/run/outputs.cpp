@@ -49,8 +49,6 @@ bool wants_folder(const OutputRequest& request) {
          names_folder(request.output);
 }
 
-bool holds_any_samples(const Format& format) { return can_write(format) && !has_skeleton(format); }
-
 // Rotations can be written only over the file that they came from.
 void require_rotations(const fs::path& input, const fs::path& output) {
   if (!is_of_format(output, has_skeleton) || format_of(input) == format_of(output)) return;

@@ -1,5 +1,7 @@
 #include "moclean/run/run_report.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -39,6 +41,21 @@ std::string changed_line(const TakeReport& take) {
   if (changed.body_size > 0)
     line += fmt::format(" ({} of the body's size)", percent(changed.largest_share()));
   return line;
+}
+
+std::vector<std::string> note_lines(const std::filesystem::path& file, const ReadingNotes& notes) {
+  constexpr std::size_t named = 6;
+  std::vector<std::string> lines;
+  for (const std::string& warning : notes.warnings)
+    lines.push_back(fmt::format("{}: {}", file.string(), warning));
+  const std::vector<std::string>& columns = notes.passed_through;
+  if (columns.empty()) return lines;
+  const auto shown = columns.begin() + static_cast<Index>(std::min(named, columns.size()));
+  lines.push_back(fmt::format("{}: {} column{} pass{} through: {}{}", file.string(), columns.size(),
+                              columns.size() == 1 ? "" : "s", columns.size() == 1 ? "es" : "",
+                              fmt::join(columns.begin(), shown, ", "),
+                              columns.size() > named ? ", ..." : ""));
+  return lines;
 }
 
 std::string unobserved_line(const TakeReport& take) {

@@ -31,6 +31,7 @@ struct TruthReport {
 struct TakeReport {
   std::filesystem::path file;
   std::string failure = {};  ///< why nothing was written for it; empty if all was
+  ReadingNotes notes = {};   ///< what reading it found out
   std::string unit;          ///< of length, as the file states it; empty where it does not
   Index frames = 0;
   Index columns = 0;
@@ -76,6 +77,9 @@ bool is_changed_much(const TakeReport& take);
 
 /// How much a take was changed, likewise.
 std::string changed_line(const TakeReport& take);
+
+/// What reading a file found out that its user should hear of: lines that start with its name.
+std::vector<std::string> note_lines(const std::filesystem::path& file, const ReadingNotes& notes);
 
 /// Which columns were never observed, likewise; the take has some.
 std::string unobserved_line(const TakeReport& take);
