@@ -68,6 +68,18 @@ TEST(MovingPart, TakesZerosForLostOnlyWhereItIsTold) {
   EXPECT_FALSE(moving_part(take, false).clip.samples.array().isNaN().any());
 }
 
+TEST(MovingPart, TakesZerosOfPointsOfAPictureForLost) {
+  Recording take{Matrix(5, 4), {"a.x", "a.y", "b.x", "b.y"}, 60, "px"};
+  for (Index i = 0; i < 5; ++i)
+    take.samples.row(i) << 500 + static_cast<double>(i), 300, 0, 200 + 2 * static_cast<double>(i);
+  take.samples.row(2).head(2).setZero();
+
+  const Matrix samples = moving_part(take, true).clip.samples;
+
+  EXPECT_TRUE(samples.row(2).head(2).array().isNaN().all());
+  EXPECT_EQ(samples.array().isNaN().count(), 2) << "a coordinate of 0 is none";
+}
+
 TEST(PutBack, KeepsUnchangedSamplesToTheLastBitAndStillColumns) {
   Recording take = small_take();
   take.samples.col(0) << 0.1, 0.7, 1e4 / 3;  // minus 0.7 and plus 0.7 are not the same again

@@ -55,9 +55,9 @@ TEST(Formats, AreFoundByExtensionInAnyCase) {
 }
 
 TEST(Formats, AreListedForHelpTextsAndForSentences) {
-  EXPECT_EQ(listed_extensions(can_read), ".bvh .amc .c3d .trc .csv .npy");
-  EXPECT_EQ(any_extension(can_read), ".bvh, .amc, .c3d, .trc, .csv or .npy");
-  EXPECT_EQ(any_extension(can_write), ".bvh, .c3d, .trc, .csv or .npy");
+  EXPECT_EQ(listed_extensions(can_read), ".bvh .amc .c3d .trc .csv .npy .npz");
+  EXPECT_EQ(any_extension(can_read), ".bvh, .amc, .c3d, .trc, .csv, .npy or .npz");
+  EXPECT_EQ(any_extension(can_write), ".bvh, .c3d, .trc, .csv, .npy or .npz");
   EXPECT_EQ(any_extension([](const Format& format) { return format.name == "BVH"; }), ".bvh");
   EXPECT_THAT(any_extension([](const Format&) { return false; }), IsEmpty());
 }
@@ -115,6 +115,7 @@ class EachReadable : public testing::Test {
     folder_.file("tiny.trc", test::tiny_trc);
     folder_.file("tiny.csv", test::tiny_csv);
     write_recording(folder_.path() / "tiny.npy", {Matrix{{1, 2, 3}}, {"a", "b", "c"}, 120, "mm"});
+    write_recording(folder_.path() / "tiny.npz", {Matrix{{1, 2, 3}}, {"a", "b", "c"}, 120, "mm"});
     write_recording(folder_.path() / "tiny.c3d",
                     {Matrix{{1, 2, 3}}, {"hip.x", "hip.y", "hip.z"}, 120, "mm"});
   }

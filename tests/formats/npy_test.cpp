@@ -1,6 +1,5 @@
 #include "moclean/formats/npy.hpp"
 
-#include <algorithm>
 #include <limits>
 #include <string>
 
@@ -11,6 +10,7 @@
 #include "moclean/formats/file.hpp"
 #include "moclean/formats/read_write.hpp"
 
+#include "formats/npy_maker.hpp"
 #include "formats/temporary_folder.hpp"
 #include "support/matrix.hpp"
 #include "support/nan.hpp"
@@ -21,37 +21,13 @@ namespace {
 using testing::ElementsAre;
 using testing::StartsWith;
 
-// What numpy.save writes, put together by hand.
-std::string npy(const std::string& header, const std::string& data, int version = 1) {
-  std::string file = "\x93NUMPY";
-  file += static_cast<char>(version);
-  file += '\0';
-  const std::string line = header + "\n";
-  for (int i = 0; i < (version == 1 ? 2 : 4); ++i)
-    file += static_cast<char>(line.size() >> (8 * i) & 0xFF);
-  return file + line + data;
-}
+using test::bytes;
+using test::dictionary;
+using test::npy;
 
-std::string dictionary(const std::string& descr, bool fortran, const std::string& shape) {
-  return fmt::format("{{'descr': '{}', 'fortran_order': {}, 'shape': {}, }}", descr,
-                     fortran ? "True" : "False", shape);
+Recording read(const std::string& file, const ReadOptions& options = {}) {
+  return parse_npy(file, "x.npy", options);
 }
-
-// Samples as bytes of the given type, least significant byte first or last.
-template <class Real>
-std::string bytes(std::initializer_list<double> values, bool big_endian = false) {
-  std::string all;
-  for (const double value : values) {
-    const auto real = static_cast<Real>(value);
-    std::string one(reinterpret_cast<const char*>(&real), sizeof real);
-    if (big_endian != (std::endian::native == std::endian::big))
-      std::reverse(one.begin(), one.end());
-    all += one;
-  }
-  return all;
-}
-
-Recording read(const std::string& file) { return parse_npy(file, "x.npy"); }
 
 const Matrix two_by_three{{1, 2, 3}, {4, 5, 6.5}};
 
@@ -140,6 +116,98 @@ TEST(Npy, WritesWhatNumpyWrites) {
 
   EXPECT_THAT(read_file(folder.path() / "x.npy"), StartsWith(npy(header, "")));
   EXPECT_EQ(std::filesystem::file_size(folder.path() / "x.npy"), 128 + 48);
+}
+
+// What is written of an array of a shape and type after `change` of its recording.
+template <class Change>
+std::string rewritten(const std::string& file, const Change& change,
+                      const ReadOptions& options = {}) {
+  Recording recording = read(file, options);
+  change(recording);
+  return npy_text(recording);
+}
+
+const auto nothing = [](Recording&) {};
+
+TEST(NpyAgain, KeepsShapeTypeAndByteOrder) {
+  const std::string data = bytes<float>({1, 2, 3, 4, 5, 6.5, 7, 8, 9, 10, 11, 12});
+  const std::string changed = bytes<float>({1, 2, 3, 4, 5, 6.5, 7, 8, 9, 10, -0.25, 12});
+  const auto set = [](Recording& recording) { recording.samples(1, 4) = -0.25; };
+  const std::string file = npy_head({'<', 'f', 4}, {2, 2, 3}) + data;
+
+  EXPECT_EQ(rewritten(file, nothing), file);
+  EXPECT_EQ(rewritten(file, set), npy_head({'<', 'f', 4}, {2, 2, 3}) + changed);
+  const std::string big = npy_head({'>', 'f', 8}, {1, 3}) + bytes<double>({1, 2, 3}, true);
+  EXPECT_EQ(rewritten(big, nothing), big);
+}
+
+TEST(NpyAgain, WritesTheOrderOfCForThatOfFortran) {
+  const std::string file = npy(dictionary("<f4", true, "(2, 3)"), bytes<float>({1, 4, 2, 5, 3, 6}));
+
+  EXPECT_EQ(rewritten(file, nothing),
+            npy_head({'<', 'f', 4}, {2, 3}) + bytes<float>({1, 2, 3, 4, 5, 6}));
+}
+
+TEST(NpyAgain, RoundsWholeNumbersAndLeavesThemWhereTheyCannotSayWhatIsMissing) {
+  const NpyType type{'<', 'i', 2};
+  const std::string file = npy_head(type, {2, 3}) + bytes<std::int16_t>({1, -2, 3, 4, 5, 6});
+
+  EXPECT_EQ(read(file).samples, (Matrix{{1, -2, 3}, {4, 5, 6}}));
+  EXPECT_EQ(rewritten(file, [](Recording& take) { take.samples(0, 1) = -7.6; }),
+            npy_head(type, {2, 3}) + bytes<std::int16_t>({1, -8, 3, 4, 5, 6}));
+  const double missing = test::nan;
+  EXPECT_EQ(rewritten(file, [&](Recording& take) { take.samples(1, 2) = missing; }),
+            npy_head({'<', 'f', 8}, {2, 3}) + bytes<double>({1, -2, 3, 4, 5, missing}));
+  EXPECT_EQ(rewritten(file, [](Recording& take) { take.samples(0, 0) = 32767.5; }),
+            npy_head({'<', 'f', 8}, {2, 3}) + bytes<double>({32767.5, -2, 3, 4, 5, 6}));
+}
+
+TEST(NpyAgain, ReadsHalfPrecisionAndRoundsToIt) {
+  // 1.5 = 0x3E00, -2 = 0xC000, 1024 = 0x6400.
+  const std::string head = npy_head({'<', 'f', 2}, {3});
+  const std::string file = head + bytes<std::uint16_t>({0x3E00, 0xC000, 0x6400});
+
+  EXPECT_EQ(read(file).samples, (Matrix{{1.5}, {-2}, {1024}}));
+  EXPECT_EQ(rewritten(file, [](Recording& take) { take.samples(0, 0) = 1024.4; }),
+            head + bytes<std::uint16_t>({0x6400, 0xC000, 0x6400}));
+}
+
+TEST(NpyAgain, PassesConfidencesThroughAndTakesPointsWithoutAnyForMissing) {
+  const std::string head = npy_head({'<', 'f', 8}, {2, 1, 4});
+  const std::string file = head + bytes<double>({1, 2, 3, 0.5, 4, 5, 6, 0});
+
+  const Recording take = read(file);
+  EXPECT_THAT(take.columns, ElementsAre("joint0.x", "joint0.y", "joint0.z"));
+  EXPECT_TRUE(test::same_bits(take.samples, Matrix{{1, 2, 3}, {test::nan, test::nan, test::nan}}));
+  EXPECT_THAT(take.notes.passed_through, ElementsAre("joint0 confidence"));
+  EXPECT_EQ(rewritten(file, nothing), file);  // 4, 5, 6 stay though they are not trusted
+  EXPECT_EQ(rewritten(file, [](Recording& all) { all.samples.row(1) << 7, 8, 9; }),
+            head + bytes<double>({1, 2, 3, 0.5, 7, 8, 9, 0}));
+}
+
+TEST(NpyAgain, WritesAPartOfTheFrames) {
+  const std::string file =
+      npy_head({'<', 'i', 4}, {3, 1, 2}) + bytes<std::int32_t>({1, 2, 3, 4, 5, 6});
+  const auto last_two = [](Recording& take) { take = excerpt(take, 1, 3); };
+
+  EXPECT_EQ(rewritten(file, last_two),
+            npy_head({'<', 'i', 4}, {2, 1, 2}) + bytes<std::int32_t>({3, 4, 5, 6}));
+}
+
+TEST(NpyAgain, KeepsMarksOfMissingSamplesThatStayMissing) {
+  const test::TemporaryFolder folder;
+  const std::string text =
+      npy_head({'<', 'i', 2}, {2, 1, 3}) + bytes<std::int16_t>({1, 2, 3, -999, -999, -999});
+  AtomicFile file(folder.path() / "x.npy");
+  file.write(text);
+  file.commit();
+
+  ReadOptions marks;
+  marks.missing = {-999};
+  const Recording take = read_recording(folder.path() / "x.npy", marks);
+
+  EXPECT_TRUE(take.samples.row(1).array().isNaN().all());
+  EXPECT_EQ(npy_text(take), text);
 }
 
 }  // namespace

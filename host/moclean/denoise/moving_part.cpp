@@ -15,20 +15,22 @@ namespace {
 constexpr double missing = std::numeric_limits<double>::quiet_NaN();
 constexpr Index fewest_joints = 2;
 
-// Makes joints missing that were lost and written as zeros; other columns do not matter.
-void drop_lost(const std::vector<Joint>& all, double frame_rate, Matrix& samples) {
+// Makes joints of so many columns missing that were lost and written as zeros.
+void drop_lost(const std::vector<Joint>& all, Index width, double frame_rate, Matrix& samples) {
   std::vector<Index> first;
   for (const Joint& joint : all)
-    if (joint.columns == 3) first.push_back(joint.first_column);
+    if (joint.columns == width) first.push_back(joint.first_column);
   const auto count = static_cast<Index>(first.size());
   if (count < fewest_joints) return;
-  Matrix positions(samples.rows(), 3 * count);
+  Matrix positions = Matrix::Zero(samples.rows(), 3 * count);  // a picture's points have no depth
   for (Index j = 0; j < count; ++j)
-    positions.middleCols<3>(3 * j) = samples.middleCols<3>(first[static_cast<std::size_t>(j)]);
+    positions.middleCols(3 * j, width) =
+        samples.middleCols(first[static_cast<std::size_t>(j)], width);
   const Mask lost = vanished(body_take(positions, frame_rate));
   for (Index j = 0; j < count; ++j)
     for (Index i = 0; i < samples.rows(); ++i)
-      if (lost(i, j)) samples.row(i).segment<3>(first[static_cast<std::size_t>(j)]).fill(missing);
+      if (lost(i, j))
+        samples.row(i).segment(first[static_cast<std::size_t>(j)], width).fill(missing);
 }
 
 // Median and stillness of one column; nothing without a sample.
@@ -104,7 +106,8 @@ Matrix motion_of(const Recording& take, const MovingPart& part, const Matrix& mo
 MovingPart moving_part(const Recording& take, bool find_lost) {
   const std::vector<Joint> all = joints(take);
   Matrix samples = take.samples;
-  if (find_lost) drop_lost(all, take.frame_rate, samples);
+  for (const Index width : {3, 2})
+    if (find_lost) drop_lost(all, width, take.frame_rate, samples);
   MovingPart part{
       .clip = {}, .columns = {}, .medians = Eigen::RowVectorXd::Zero(samples.cols()), .centre = {}};
   for (Index c = 0; c < samples.cols(); ++c) {

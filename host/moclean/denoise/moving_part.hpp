@@ -23,7 +23,8 @@ struct MovingPart {
 /// distances stay: the median over the joints that move of their columns' medians, x, y and z.
 ///
 /// The moving part of a take. A joint is left out if all three of its columns are still, a column
-/// of no joint if it is. With `find_lost`, joints that vanished() are missing.
+/// of no joint if it is. With `find_lost`, joints that vanished() are missing; points of a picture
+/// (two columns) are looked at by themselves, without a depth.
 MovingPart moving_part(const Recording& take, bool find_lost);
 
 /// Makes the result of the moving part one of the take: still columns keep their value in every

@@ -12,13 +12,14 @@
 #include "moclean/formats/csv.hpp"
 #include "moclean/formats/extension.hpp"
 #include "moclean/formats/npy.hpp"
+#include "moclean/formats/npz.hpp"
 #include "moclean/formats/trc.hpp"
 
 namespace moclean {
 
 std::span<const Format* const> formats() {
-  static constexpr std::array<const Format*, 6> all = {
-      &bvh_format, &amc_format, &c3d_format, &trc_format, &csv_format, &npy_format,
+  static constexpr std::array<const Format*, 7> all = {
+      &bvh_format, &amc_format, &c3d_format, &trc_format, &csv_format, &npy_format, &npz_format,
   };
   return all;
 }

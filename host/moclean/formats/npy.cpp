@@ -1,262 +1,198 @@
 #include "moclean/formats/npy.hpp"
 
 #include <algorithm>
-#include <array>
+#include <any>
 #include <bit>
-#include <charconv>
+#include <cmath>
 #include <cstdint>
-#include <cstring>
-#include <string>
-#include <vector>
-
-#include <fmt/format.h>
+#include <limits>
+#include <utility>
 
 #include "moclean/core/error.hpp"
-#include "moclean/formats/text_scanner.hpp"
+#include "moclean/formats/array_columns.hpp"
+#include "moclean/motion/framed_source.hpp"
 
 namespace moclean {
 namespace {
 
-constexpr std::string_view magic = "\x93NUMPY";
-constexpr char native_order = std::endian::native == std::endian::little ? '<' : '>';
+constexpr NpyType real64{.order = std::endian::native == std::endian::little ? '<' : '>'};
 
-// What the header says.
-struct Layout {
-  char byte_order = '\0';     // '<' little, '>' big
-  std::size_t item_size = 0;  // 4: float32, 8: float64
-  bool fortran_order = false;
-  std::vector<std::uint64_t> shape;
-};
+// Whether the numbers themselves are needed to write the array again.
+bool needs_numbers(const NpyArray& array, const ArrayColumns& columns, const ReadOptions& options) {
+  return array.type.is_integer() || !options.missing.empty() ||
+         columns.samples.size() < array.count() / array.shape[0];
+}
 
-// Reads the Python dictionary {'descr': '<f8', 'fortran_order': False, 'shape': (3, 4), }.
-class HeaderParser {
+FramedSource source_of(const NpyArray& array, const ArrayColumns& columns,
+                       const ReadOptions& options) {
+  NpyDocument document{.content = nullptr,
+                       .array = array,
+                       .samples = columns.samples,
+                       .columns = columns.names,
+                       .confidences = columns.confidences,
+                       .missing = options.missing};
+  document.array.items = {};
+  if (needs_numbers(array, columns, options)) {
+    document.content = std::make_shared<const std::string>(array.items);
+    document.array.items = *document.content;
+  }
+  const std::uint64_t bytes = document.array.items.size();
+  return {.file = std::move(document), .first = 0, .bytes = bytes};
+}
+
+void drop_untrusted(const Matrix& numbers, const ArrayColumns& columns, Matrix& samples) {
+  for (std::size_t c = 0; c < columns.samples.size(); ++c) {
+    if (columns.confidences[c] < 0) continue;
+    for (Index f = 0; f < numbers.rows(); ++f)
+      if (numbers(f, columns.confidences[c]) == 0)
+        samples(f, static_cast<Index>(c)) = std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+// An array that is written again.
+class NpyRewriter {
  public:
-  HeaderParser(std::string_view header, const std::filesystem::path& file)
-      : file_(file), rest_(header) {}
-
-  Layout parse() {
-    bool has_descr = false, has_order = false, has_shape = false;
-    expect('{');
-    while (!accept('}')) {
-      const std::string_view key = text();
-      expect(':');
-      if (key == "descr")
-        has_descr = descr();
-      else if (key == "fortran_order")
-        has_order = fortran_order();
-      else if (key == "shape")
-        has_shape = shape();
-      else
-        fail("descr, fortran_order or shape", key);
-      if (!accept(',') && next() != '}') fail("',' or '}'", rest_);
-    }
-    if (next() != '\0') fail("its end", rest_);
-    if (!has_descr || !has_order || !has_shape)
-      throw FileError(file_, "bad npy header: expected descr, fortran_order and shape");
-    return layout_;
+  NpyRewriter(const NpyDocument& document, Index first, const Matrix& samples)
+      : document_(document),
+        first_(static_cast<std::size_t>(first)),
+        samples_(samples),
+        sample_of_(width(), -1) {
+    for (std::size_t c = 0; c < document.samples.size(); ++c)
+      sample_of_[static_cast<std::size_t>(document.samples[c])] = static_cast<Index>(c);
+    if (document.content) places_ = places_of(document.array);
+    type_ = written_type();
   }
 
- private:
-  char next() {
-    rest_.remove_prefix(std::min(rest_.find_first_not_of(" \n"), rest_.size()));
-    return rest_.empty() ? '\0' : rest_.front();
-  }
-
-  bool accept(char c) {
-    if (next() != c) return false;
-    rest_.remove_prefix(1);
-    return true;
-  }
-
-  void expect(char c) {
-    if (!accept(c)) fail(fmt::format("'{}'", c), rest_);
-  }
-
-  std::string_view text() {
-    const char quote = next();
-    if (quote != '\'' && quote != '"') fail("a string", rest_);
-    const std::size_t end = rest_.find(quote, 1);
-    if (end == std::string_view::npos) fail("a string", rest_);
-    const std::string_view text = rest_.substr(1, end - 1);
-    rest_.remove_prefix(end + 1);
+  std::string text() const {
+    std::vector<std::uint64_t> shape = document_.array.shape;
+    shape[0] = static_cast<std::uint64_t>(samples_.rows());
+    std::string text = npy_head(type_, shape);
+    const std::size_t head = text.size();
+    text.resize(head + static_cast<std::size_t>(samples_.rows()) * width() * type_.size);
+    char* item = text.data() + head;
+    for (Index f = 0; f < samples_.rows(); ++f)
+      for (std::size_t c = 0; c < width(); ++c, item += type_.size) put(f, c, item);
     return text;
   }
 
-  bool descr() {
-    constexpr std::string_view known = "float32 or float64 ('<f4' '>f4' '<f8' '>f8')";
-    if (next() == '[') fail(known, rest_);
-    const std::string_view type = text();
-    if (type != "<f4" && type != ">f4" && type != "<f8" && type != ">f8") fail(known, type);
-    layout_.byte_order = type[0];
-    layout_.item_size = static_cast<std::size_t>(type[2] - '0');
-    return true;
-  }
+ private:
+  std::size_t width() const { return document_.array.count() / document_.array.shape[0]; }
 
-  bool fortran_order() {
-    next();
-    for (const std::string_view word : {"True", "False"})
-      if (rest_.starts_with(word)) {
-        rest_.remove_prefix(word.size());
-        layout_.fortran_order = word == "True";
-        return true;
+  // Integers cannot say that a sample is missing, unless the file says so itself.
+  NpyType written_type() const {
+    const NpyType& type = document_.array.type;
+    if (!type.is_integer()) return type;
+    for (std::size_t c = 0; c < width(); ++c)
+      for (Index f = 0; f < samples_.rows(); ++f) {
+        if (keeps(f, c, sample_of_[c])) continue;
+        const double sample = samples_(f, sample_of_[c]);
+        if (std::isnan(sample) || !fits(sample, type)) return real64;
       }
-    fail("True or False", rest_);
+    return type;
   }
 
-  bool shape() {
-    layout_.shape.clear();
-    expect('(');
-    while (!accept(')')) {
-      next();
-      std::uint64_t extent = 0;
-      const auto [after, error] =
-          std::from_chars(rest_.data(), rest_.data() + rest_.size(), extent);
-      if (error != std::errc()) fail("a number of frames or columns", rest_);
-      rest_.remove_prefix(static_cast<std::size_t>(after - rest_.data()));
-      layout_.shape.push_back(extent);
-      if (!accept(',') && next() != ')') fail("',' or ')'", rest_);
-    }
-    return true;
+  const char* original(Index frame, std::size_t column) const {
+    return document_.array.items.data() + (first_ + static_cast<std::size_t>(frame)) * places_.row +
+           places_.columns[column];
   }
 
-  [[noreturn]] void fail(std::string_view expected, std::string_view found) const {
-    throw FileError(file_,
-                    fmt::format("bad npy header: expected {}, found {}", expected,
-                                found.empty() ? std::string("the end of it") : excerpt(found)));
+  double number(Index frame, std::size_t column) const {
+    return number_at(original(frame, column), document_.array.type);
   }
 
-  const std::filesystem::path& file_;
-  std::string_view rest_;
-  Layout layout_;
+  bool was_missing(Index frame, std::size_t column, Index sample) const {
+    const Index confidence = document_.confidences[static_cast<std::size_t>(sample)];
+    if (confidence >= 0 && number(frame, static_cast<std::size_t>(confidence)) == 0) return true;
+    return std::ranges::find(document_.missing, number(frame, column)) != document_.missing.end();
+  }
+
+  // Whether the array's own number stands.
+  bool keeps(Index frame, std::size_t column, Index sample) const {
+    if (!document_.content || sample < 0) return sample < 0;
+    const double value = samples_(frame, sample);
+    return number(frame, column) == value ||
+           (std::isnan(value) && was_missing(frame, column, sample));
+  }
+
+  void put(Index frame, std::size_t column, char* item) const {
+    const Index sample = sample_of_[column];
+    if (!keeps(frame, column, sample))
+      put_number(samples_(frame, sample), type_, item);
+    else if (type_ == document_.array.type)
+      std::copy_n(original(frame, column), type_.size, item);
+    else
+      put_number(number(frame, column), type_, item);
+  }
+
+  const NpyDocument& document_;
+  std::size_t first_;
+  const Matrix& samples_;
+  NpyType type_;
+  std::vector<Index> sample_of_;  // per column of the array, or -1
+  NpyPlaces places_;
 };
 
-// Takes magic, version and header off the front of `bytes` and leaves the samples.
-Layout take_layout(std::string_view& bytes, const std::filesystem::path& file) {
-  if (!bytes.starts_with(magic))
-    throw FileError(file, "expected an npy file, which starts with '?NUMPY', found " +
-                              (bytes.empty() ? "an empty file" : excerpt(bytes.substr(0, 6))));
-  const auto byte = [&](std::size_t i) {
-    return i < bytes.size() ? static_cast<unsigned char>(bytes[i]) : 0U;
-  };
-  const unsigned version = byte(6);
-  if (version < 1 || version > 3)
-    throw FileError(file, fmt::format("expected npy format 1, 2 or 3, found {}", version));
-  const std::size_t length_bytes = version == 1 ? 2 : 4;
-  std::size_t length = 0;
-  for (std::size_t i = length_bytes; i-- > 0;) length = length << 8 | byte(8 + i);
-  const std::size_t start = magic.size() + 2 + length_bytes;
-  if (bytes.size() < start || bytes.size() - start < length)
-    throw FileError(file, fmt::format("the npy header is cut short: expected {} bytes, found {}",
-                                      start + length, bytes.size()));
-  const Layout layout = HeaderParser(bytes.substr(start, length), file).parse();
-  bytes.remove_prefix(start + length);
-  return layout;
-}
-
-// Throws unless there are exactly as many samples as the shape says. Never multiplies into
-// overflow.
-void check_size(const Layout& layout, std::size_t bytes, const std::filesystem::path& file) {
-  std::string shape;
-  for (const std::uint64_t extent : layout.shape)
-    shape += fmt::format("{}{}", shape.empty() ? "" : " x ", extent);
-  if (layout.shape.empty() || std::count(layout.shape.begin(), layout.shape.end(), 0u) > 0)
-    throw FileError(file, "expected frames and columns, found an array of shape '" + shape + "'");
-  std::uint64_t room = bytes / layout.item_size;
-  for (const std::uint64_t extent : layout.shape) room /= extent;
-  std::uint64_t size = room == 1 ? layout.item_size : 0;
-  for (const std::uint64_t extent : layout.shape) size *= extent;
-  if (size != bytes)
-    throw FileError(file, fmt::format("expected {} samples of {} bytes, found {} bytes", shape,
-                                      layout.item_size, bytes));
-}
-
-template <class Real>
-double sample(const char* bytes, bool swap) {
-  std::array<char, sizeof(Real)> raw;
-  std::copy_n(bytes, sizeof(Real), raw.begin());
-  if (swap) std::reverse(raw.begin(), raw.end());
-  return static_cast<double>(std::bit_cast<Real>(raw));
-}
-
-// Where, in samples, the first frame of each column lies in Fortran order: the first axis runs
-// fastest, whereas our columns count through the other axes with the last one fastest.
-std::vector<std::size_t> fortran_columns(const std::vector<std::uint64_t>& shape, Index columns) {
-  std::vector<std::size_t> places;
-  for (Index c = 0; c < columns; ++c) {
-    auto rest = static_cast<std::uint64_t>(c);
-    std::uint64_t place = 0;
-    std::uint64_t stride = static_cast<std::uint64_t>(columns) * shape[0];
-    for (std::size_t axis = shape.size(); axis-- > 1; rest /= shape[axis]) {
-      stride /= shape[axis];
-      place += rest % shape[axis] * stride;
-    }
-    places.push_back(place);
-  }
-  return places;
-}
-
-template <class Real>
-Matrix samples(std::string_view bytes, const Layout& layout) {
-  const auto frames = static_cast<Index>(layout.shape[0]);
-  const Index columns = static_cast<Index>(bytes.size() / sizeof(Real)) / frames;
-  const bool swap = layout.byte_order != native_order;
-  std::vector<std::size_t> places(static_cast<std::size_t>(columns));
-  std::size_t stride = 1;  // from frame to frame
-  if (layout.fortran_order) {
-    places = fortran_columns(layout.shape, columns);
-  } else {
-    for (std::size_t c = 0; c < places.size(); ++c) places[c] = c;
-    stride = places.size();
-  }
-  Matrix result(frames, columns);
-  for (Index f = 0; f < frames; ++f)
-    for (Index c = 0; c < columns; ++c) {
-      const std::size_t place =
-          static_cast<std::size_t>(f) * stride + places[static_cast<std::size_t>(c)];
-      result(f, c) = sample<Real>(bytes.data() + place * sizeof(Real), swap);
-    }
-  return result;
-}
-
 Recording read_npy(std::string_view content, const std::filesystem::path& file,
-                   const ReadOptions&) {
-  return parse_npy(content, file);
+                   const ReadOptions& options) {
+  return parse_npy(content, file, options);
+}
+
+// The document of a recording that still fits it; null if none does.
+const NpyDocument* document_of(const Recording& recording, Index& first) {
+  const auto* const source = std::any_cast<FramedSource>(&recording.source);
+  const auto* const document = source ? std::any_cast<NpyDocument>(&source->file) : nullptr;
+  if (!document || document->columns != recording.columns) return nullptr;
+  first = source->first;
+  const auto frames = static_cast<Index>(document->array.shape[0]);
+  return first + recording.frames() <= frames ? document : nullptr;
 }
 
 }  // namespace
 
-Recording parse_npy(std::string_view bytes, const std::filesystem::path& file) {
-  const Layout layout = take_layout(bytes, file);
-  check_size(layout, bytes.size(), file);
-  Recording clip;
-  clip.samples =
-      layout.item_size == 4 ? samples<float>(bytes, layout) : samples<double>(bytes, layout);
-  clip.columns = default_column_names(clip.samples.cols());
-  return clip;
+Recording recording_of(const NpyArray& array, const std::filesystem::path& file,
+                       const ReadOptions& options) {
+  require_readable_shape(array.shape, file);
+  Recording recording;
+  Matrix numbers = numbers_of(array);
+  ArrayColumns columns = columns_of_array(array.shape, numbers, file, options);
+  recording.columns = columns.names;
+  recording.source = source_of(array, columns, options);
+  recording.notes = std::move(columns.notes);
+  if (static_cast<Index>(columns.samples.size()) == numbers.cols()) {
+    recording.samples = std::move(numbers);
+  } else {
+    recording.samples = numbers(Eigen::all, columns.samples);
+    drop_untrusted(numbers, columns, recording.samples);
+  }
+  return recording;
 }
 
-void write_npy(AtomicFile& file, const Recording& clip) {
-  std::string header =
-      fmt::format("{{'descr': '{}f8', 'fortran_order': False, 'shape': ({}, {}), }}", native_order,
-                  clip.samples.rows(), clip.samples.cols());
-  constexpr std::size_t alignment = 64, front = magic.size() + 4;
-  while ((front + header.size() + 1) % alignment != 0) header += ' ';
-  header += '\n';
-
-  file.write(magic);
-  file.write({"\x01\x00", 2});
-  const std::array<char, 2> length = {static_cast<char>(header.size() & 0xFF),
-                                      static_cast<char>(header.size() >> 8)};
-  file.write({length.data(), length.size()});
-  file.write(header);
-  file.write({reinterpret_cast<const char*>(clip.samples.data()),
-              static_cast<std::size_t>(clip.samples.size()) * sizeof(double)});
+Recording parse_npy(std::string_view content, const std::filesystem::path& file,
+                    const ReadOptions& options) {
+  const NpyArray array = parse_npy_array(content, file);
+  if (!array.type.is_number())
+    throw FileError(file, "holds text, expected an array of coordinates");
+  return recording_of(array, file, options);
 }
+
+std::string npy_text(const Recording& recording) {
+  Index first = 0;
+  if (const NpyDocument* document = document_of(recording, first))
+    return NpyRewriter(*document, first, recording.samples).text();
+  std::string text = npy_head(real64, {static_cast<std::uint64_t>(recording.samples.rows()),
+                                       static_cast<std::uint64_t>(recording.samples.cols())});
+  return text.append(reinterpret_cast<const char*>(recording.samples.data()),
+                     static_cast<std::size_t>(recording.samples.size()) * sizeof(double));
+}
+
+void write_npy(AtomicFile& file, const Recording& recording) { file.write(npy_text(recording)); }
 
 constinit const Format npy_format = {
     .name = "NPY",
     .extension = ".npy",
-    .notes = "float32 or float64 in, float64 out, frames x columns",
+    .notes =
+        "(frames, points, 3 or 2, or 4 with a confidence) or (frames, columns), of any real or "
+        "integer type; keeps shape and type",
     .content = {.gaps = true},
     .read = read_npy,
     .write = write_npy,
