@@ -10,13 +10,13 @@
 #include "moclean/core/version.hpp"
 
 #include "cli/commands/commands.hpp"
+#include "cli/printing/say.hpp"
 
 namespace moclean::cli {
 namespace {
 
 ExitCode fail(ExitCode code, std::string_view message) {
-  // Not fmt::print, which throws when standard error is closed.
-  std::fputs(fmt::format("moclean: {}\n", message).c_str(), stderr);
+  warn("{}", message);
   return code;
 }
 

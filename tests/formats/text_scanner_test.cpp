@@ -58,7 +58,7 @@ TEST(TextScanner, RejectsWhatIsNotANumber) {
 
 TEST(TextScanner, ShortensAndCleansWhatItQuotes) {
   EXPECT_EQ(excerpt(std::string(40, 'a')), "'" + std::string(32, 'a') + "...'");
-  EXPECT_EQ(excerpt(std::string_view("a\0\x1B", 3)), R"('a??')");
+  EXPECT_EQ(excerpt(std::string_view("a\0\x1B", 3)), R"('a\x00\x1B')");
 }
 
 TEST(TextScanner, NamesFileLineExpectationAndFinding) {

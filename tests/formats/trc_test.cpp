@@ -180,7 +180,7 @@ TEST(Trc, RefusesWhatItCannotSay) {
   EXPECT_THAT(writing({"a.x", "a.y", "b.z"}, 50),
               ThrowsMessage<FileError>(HasSubstr("column 'a' is no x, y, z of one")));
   EXPECT_THAT(writing({"a\tb.x", "a\tb.y", "a\tb.z"}, 50),
-              ThrowsMessage<FileError>(HasSubstr("'a?b' holds a tab")));
+              ThrowsMessage<FileError>(HasSubstr("'a\\x09b' holds a tab")));
   EXPECT_THAT(writing({"a.x", "a.y", "a.z"}, 0),
               ThrowsMessage<FileError>(HasSubstr("needs a frame rate (--rate states it)")));
 }

@@ -10,6 +10,7 @@
 #include "moclean/run/job.hpp"
 
 #include "cli/backend/tuning_cache.hpp"
+#include "cli/printing/say.hpp"
 
 namespace moclean::cli {
 namespace {
@@ -20,7 +21,7 @@ namespace fs = std::filesystem;
 std::optional<Tuning> kept_tuning(const fs::path& file, const DeviceInfo& device) {
   CachedTuning cached = read_tuning(file, device);
   if (!cached.problem.empty())
-    fmt::print(stderr, "moclean: ignoring the kept tuning: {}; see moclean tune\n", cached.problem);
+    warn("ignoring the kept tuning: {}; see moclean tune", cached.problem);
   return cached.tuning;
 }
 

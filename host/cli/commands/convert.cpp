@@ -12,6 +12,7 @@
 
 #include "cli/commands/commands.hpp"
 #include "cli/options/input_options.hpp"
+#include "cli/printing/say.hpp"
 
 namespace moclean::cli {
 namespace {
@@ -26,10 +27,9 @@ ExitCode run(const ConvertOptions& options) {
   require_writable_recording(options.output);
   const Recording clip = read_recording(options.input, options.reading);
   write_recording(options.output, clip);
-  for (const std::string& line : note_lines(options.input, clip.notes))
-    fmt::print(stderr, "moclean: {}\n", line);
-  fmt::print("{} -> {}: {} frames x {} columns\n", options.input.string(), options.output.string(),
-             clip.frames(), clip.samples.cols());
+  for (const std::string& line : note_lines(options.input, clip.notes)) warn("{}", line);
+  say("{} -> {}: {} frames x {} columns\n", options.input.string(), options.output.string(),
+      clip.frames(), clip.samples.cols());
   return ExitCode::done;
 }
 

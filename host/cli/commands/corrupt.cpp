@@ -15,6 +15,7 @@
 
 #include "cli/commands/commands.hpp"
 #include "cli/options/input_options.hpp"
+#include "cli/printing/say.hpp"
 
 namespace moclean::cli {
 namespace {
@@ -43,10 +44,10 @@ ExitCode run(const CorruptOptions& options) {
   if (!options.mask.empty()) write_recording(options.mask, mask_of(noisy));
   clip.commit();
   const bool any_left = !(clean.samples - noisy.clip.samples).array().isNaN().all();
-  fmt::print("{} -> {}: {} of {} entries changed, FD {}\n", options.input.string(),
-             options.output.string(), noisy.touched.count(), noisy.touched.size(),
-             any_left ? fmt::format("{:.6g}", frobenius_distance(clean.samples, noisy.clip.samples))
-                      : "of nothing left");
+  say("{} -> {}: {} of {} entries changed, FD {}\n", options.input.string(),
+      options.output.string(), noisy.touched.count(), noisy.touched.size(),
+      any_left ? fmt::format("{:.6g}", frobenius_distance(clean.samples, noisy.clip.samples))
+               : "of nothing left");
   return ExitCode::done;
 }
 

@@ -9,6 +9,7 @@
 
 #include "cli/commands/commands.hpp"
 #include "cli/printing/json_record.hpp"
+#include "cli/printing/say.hpp"
 
 namespace moclean::cli {
 namespace {
@@ -42,7 +43,7 @@ ExitCode run(bool json) {
   }
   if (devices.empty())
     throw DeviceError("no OpenCL device found; install a driver, for a CPU pocl-opencl-icd");
-  for (const DeviceInfo& device : devices) fmt::print("{}\n", describe(device));
+  for (const DeviceInfo& device : devices) say("{}\n", describe(device));
   return ExitCode::done;
 }
 

@@ -15,6 +15,7 @@
 #include "cli/commands/commands.hpp"
 #include "cli/options/input_options.hpp"
 #include "cli/printing/json_record.hpp"
+#include "cli/printing/say.hpp"
 
 namespace moclean::cli {
 namespace {
@@ -70,31 +71,31 @@ std::string unit_of(const Figure& figure, const Recording& truth) {
 
 void print_figures(const std::vector<Value>& values, const Recording& truth) {
   for (const auto& [figure, value] : values)
-    fmt::print("{:<16} {:<12.6g} {:<12} {}\n", figure.name, value, unit_of(figure, truth),
-               figure.description);
-  fmt::print("\n");
+    say("{:<16} {:<12.6g} {:<12} {}\n", figure.name, value, unit_of(figure, truth),
+        figure.description);
+  say("\n");
 }
 
 void print_comparison(const Comparison& comparison, const Recording& truth,
                       const std::vector<Value>& values) {
   const std::string unit = truth.unit.empty() ? "" : " " + truth.unit;
-  fmt::print("compared         {} frames x {} columns\n", truth.frames(), truth.samples.cols());
+  say("compared         {} frames x {} columns\n", truth.frames(), truth.samples.cols());
   if (comparison.not_compared > 0)
-    fmt::print("not compared     {} entries that are missing in either\n", comparison.not_compared);
-  fmt::print("FD               {:.6g}{}\n", comparison.fd, unit);
-  fmt::print("entries changed  {}, RMSE over them {:.6g}{}\n", comparison.changed,
-             comparison.rmse_changed, unit);
-  fmt::print("largest error    {:.6g}{}\n", comparison.largest, unit);
-  fmt::print("worst joint      {}\n\n",
-             comparison.worst_joint.empty() ? "none, they are equal" : comparison.worst_joint);
+    say("not compared     {} entries that are missing in either\n", comparison.not_compared);
+  say("FD               {:.6g}{}\n", comparison.fd, unit);
+  say("entries changed  {}, RMSE over them {:.6g}{}\n", comparison.changed, comparison.rmse_changed,
+      unit);
+  say("largest error    {:.6g}{}\n", comparison.largest, unit);
+  say("worst joint      {}\n\n",
+      comparison.worst_joint.empty() ? "none, they are equal" : comparison.worst_joint);
   print_figures(values, truth);
 
   std::size_t width = 5;
   for (const auto& joint : comparison.joints) width = std::max(width, joint.name.size());
-  fmt::print("{:<{}}  {:>12}  {:>12}  {:>8}\n", "joint", width, "RMSE", "largest", "at frame");
+  say("{:<{}}  {:>12}  {:>12}  {:>8}\n", "joint", width, "RMSE", "largest", "at frame");
   for (const auto& joint : comparison.joints)
-    fmt::print("{:<{}}  {:>12.6g}  {:>12.6g}  {:>8}\n", joint.name, width, joint.rmse,
-               joint.largest, joint.largest_frame);
+    say("{:<{}}  {:>12.6g}  {:>12.6g}  {:>8}\n", joint.name, width, joint.rmse, joint.largest,
+        joint.largest_frame);
 }
 
 // The frames that --frames asks for. It counts in the truth; a file as long as the truth is cut

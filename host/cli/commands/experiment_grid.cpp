@@ -18,6 +18,7 @@
 #include "cli/printing/json_record.hpp"
 #include "cli/printing/markdown_table.hpp"
 #include "cli/printing/progress_line.hpp"
+#include "cli/printing/say.hpp"
 
 namespace moclean::cli {
 namespace {
@@ -178,10 +179,9 @@ void write_results(const Grid& grid, const GridOptions& options) {
     write_report(options.report.empty() ? options.output / "report.html" : options.report,
                  grid_report(grid, options));
   if (!options.prints()) return;
-  fmt::print("{}\nThe files are in {}: cells.jsonl, cells.csv, summary.json{}.\n",
-             markdown_table(ranking_table(grid.experiment, grid.standings)),
-             options.output.string(),
-             report_available() && options.report.empty() ? ", report.html" : "");
+  say("{}\nThe files are in {}: cells.jsonl, cells.csv, summary.json{}.\n",
+      markdown_table(ranking_table(grid.experiment, grid.standings)), options.output.string(),
+      report_available() && options.report.empty() ? ", report.html" : "");
 }
 
 void prepare(GridOptions& options) {
@@ -205,15 +205,13 @@ ExitCode run_grid(GridOptions options) {
   const Interrupt interrupt;  // before the threads of the OpenCL driver
   Grid grid = read(options);
   for (const fs::path& file : grid.missing)
-    fmt::print(stderr, "moclean: {} is not there; this take is left out\n", file.string());
+    warn("{} is not there; this take is left out", file.string());
   make_folder(options.output);
   CellResults kept(options.output / "cells.jsonl");
   try {
     compute(grid, options, kept, interrupt.token());
   } catch (const Cancelled&) {
-    fmt::print(stderr,
-               "moclean: interrupted; finished cells are in {}, the same command continues\n",
-               kept.file().string());
+    warn("interrupted; finished cells are in {}, the same command continues", kept.file().string());
     return ExitCode::interrupted;
   }
   write_results(grid, options);

@@ -14,6 +14,7 @@
 #include "cli/printing/json_record.hpp"
 #include "cli/printing/markdown_table.hpp"
 #include "cli/printing/progress_line.hpp"
+#include "cli/printing/say.hpp"
 
 namespace moclean::cli {
 namespace {
@@ -112,7 +113,7 @@ Report table_report(const TableOptions& options, const std::string& device,
 
 ExitCode warn_of_unconverged(Index segments) {
   if (segments == 0) return ExitCode::done;
-  fmt::print(stderr, "moclean: {} segments did not converge\n", segments);
+  warn("{} segments did not converge", segments);
   return ExitCode::not_converged;
 }
 
@@ -142,9 +143,8 @@ ExitCode run_table(TableOptions options) {
 
   const auto tables = paper_report_tables(options.table, paper, results);
   if (options.prints()) {
-    fmt::print("{}, mean and standard deviation over {} seeds\n", title_of(options.table),
-               options.seeds);
-    for (const ReportTable& table : tables) fmt::print("\n{}", markdown_table(table));
+    say("{}, mean and standard deviation over {} seeds\n", title_of(options.table), options.seeds);
+    for (const ReportTable& table : tables) say("\n{}", markdown_table(table));
   }
   if (!options.json.empty())
     write_json(options.json, table_record(options, opened.report.name, paper, results));

@@ -11,6 +11,7 @@
 #include "cli/commands/commands.hpp"
 #include "cli/options/input_options.hpp"
 #include "cli/printing/json_record.hpp"
+#include "cli/printing/say.hpp"
 
 namespace moclean::cli {
 namespace {
@@ -48,24 +49,23 @@ Json info_record(const std::filesystem::path& file, const Recording& clip) {
 }
 
 void print_info(const std::filesystem::path& file, const Recording& clip) {
-  fmt::print("format    {}\n", format_name(file));
-  fmt::print("frames    {}\n", clip.frames());
-  fmt::print("columns   {}\n", clip.samples.cols());
+  say("format    {}\n", format_name(file));
+  say("frames    {}\n", clip.frames());
+  say("columns   {}\n", clip.samples.cols());
   std::string names;
   const std::vector<Joint> all = joints(clip);
   for (const Joint& joint : all) names += (names.empty() ? "" : " ") + joint.name;
-  fmt::print("joints    {}: {}\n", all.size(), names);
+  say("joints    {}: {}\n", all.size(), names);
   if (clip.frame_rate > 0) {
-    fmt::print("rate      {:.6g} Hz\n", clip.frame_rate);
-    fmt::print("duration  {:.6g} s\n", static_cast<double>(clip.frames()) / clip.frame_rate);
+    say("rate      {:.6g} Hz\n", clip.frame_rate);
+    say("duration  {:.6g} s\n", static_cast<double>(clip.frames()) / clip.frame_rate);
   } else {
-    fmt::print("rate      unknown (--rate states it)\n");
+    say("rate      unknown (--rate states it)\n");
   }
-  fmt::print("unit      {}\n", clip.unit.empty() ? "unknown" : clip.unit);
-  fmt::print("missing   {} samples\n", clip.samples.array().isNaN().count());
-  if (!clip.notes.layout.empty()) fmt::print("layout    {}\n", clip.notes.layout);
-  for (const std::string& line : note_lines(file, clip.notes))
-    fmt::print(stderr, "moclean: {}\n", line);
+  say("unit      {}\n", clip.unit.empty() ? "unknown" : clip.unit);
+  say("missing   {} samples\n", clip.samples.array().isNaN().count());
+  if (!clip.notes.layout.empty()) say("layout    {}\n", clip.notes.layout);
+  for (const std::string& line : note_lines(file, clip.notes)) warn("{}", line);
 }
 
 ExitCode run(const InfoOptions& options) {

@@ -13,6 +13,7 @@
 #include "cli/commands/commands.hpp"
 #include "cli/commands/tuning_contest.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/printing/say.hpp"
 
 namespace moclean::cli {
 namespace {
@@ -27,8 +28,8 @@ struct TuneOptions {
 
 void print_tried(const TriedTuning& tried) {
   const bool left_out = tried.repetitions == 0 && tried.result != TriedTuning::Result::wrong;
-  fmt::print("{:<28}{:>10.2f} ms{:>8.3f}  {}{}\n", tried.choice, 1e3 * tried.seconds, tried.ratio,
-             to_string(tried.result), left_out ? ", one run: too slow" : "");
+  say("{:<28}{:>10.2f} ms{:>8.3f}  {}{}\n", tried.choice, 1e3 * tried.seconds, tried.ratio,
+      to_string(tried.result), left_out ? ", one run: too slow" : "");
   std::fflush(stdout);
 }
 
@@ -66,9 +67,9 @@ ExitCode run(const TuneOptions& options) {
   const Index segments = options.quick ? 12 : 48;
   const ContestRules rules{.repetitions = options.quick ? 3 : 7, .quick = options.quick};
   if (table)
-    fmt::print("{}: {} segments of {} frames x {} columns\n{:<28}{:>13}{:>8}  {}\n",
-               device.info().name, segments, options.frames, options.columns, "choice", "median",
-               "ratio", "result, to the default's");
+    say("{}: {} segments of {} frames x {} columns\n{:<28}{:>13}{:>8}  {}\n", device.info().name,
+        segments, options.frames, options.columns, "choice", "median", "ratio",
+        "result, to the default's");
   const ContestReport report = find_best_tuning(
       device, motion_like(segments, options.frames, options.columns), rules,
       [&](const TriedTuning& tried) {
@@ -79,7 +80,7 @@ ExitCode run(const TuneOptions& options) {
   write_tuning(file, device.info(), report.best);
   if (!options.json.empty())
     write_json(options.json, record_of(options, segments, device.info(), report, file));
-  if (table) fmt::print("kept: {}\nin {}\n", to_string(report.best), file.string());
+  if (table) say("kept: {}\nin {}\n", to_string(report.best), file.string());
   return ExitCode::done;
 }
 

@@ -22,7 +22,7 @@ constexpr char native_order = std::endian::native == std::endian::little ? '<' :
 // Takes magic, version and header off the front of `bytes` and leaves the items.
 NpyArray take_header(std::string_view& bytes, const std::filesystem::path& file) {
   if (bytes.substr(0, magic.size()) != magic)
-    throw FileError(file, "expected an npy file, which starts with '?NUMPY', found " +
+    throw FileError(file, "expected an npy file, which starts with '\\x93NUMPY', found " +
                               (bytes.empty() ? "an empty file" : excerpt(bytes.substr(0, 6))));
   const auto byte = [&](std::size_t i) {
     return i < bytes.size() ? static_cast<unsigned char>(bytes[i]) : 0U;

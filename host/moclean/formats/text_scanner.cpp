@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/core/printable.hpp"
 
 namespace moclean {
 namespace {
@@ -22,10 +23,15 @@ const char* skip_plus(const char* first, const char* last) {
 
 std::string excerpt(std::string_view text) {
   constexpr std::size_t longest = 32;
-  std::string shown(text.substr(0, longest));
-  std::replace_if(
-      shown.begin(), shown.end(), [](char c) { return c >= 0 && c < ' '; }, '?');
-  return fmt::format("'{}{}'", shown, text.size() > longest ? "..." : "");
+  std::size_t length = std::min(longest, text.size());
+  const auto is_within_character = [&] {
+    return length < text.size() && (static_cast<unsigned char>(text[length]) & 0xC0U) == 0x80U;
+  };
+  for (int i = 0; i < 3 && is_within_character() && length > 0; ++i) --length;
+  std::string shown = printable(text.substr(0, length));
+  for (std::size_t end = shown.find('\n'); end != std::string::npos; end = shown.find('\n', end))
+    shown.replace(end, 1, "\\x0A");
+  return fmt::format("'{}{}'", shown, length < text.size() ? "..." : "");
 }
 
 TextScanner::TextScanner(std::string_view text, std::filesystem::path file, const Dialect& dialect)

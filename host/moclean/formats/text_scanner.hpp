@@ -10,7 +10,8 @@
 
 namespace moclean {
 
-/// A piece of file content for an error message: in quotes, shortened, control bytes as '?'.
+/// A piece of file content for an error message: in quotes, shortened, control bytes and what is no
+/// UTF-8 as \xNN.
 std::string excerpt(std::string_view text);
 
 /// Walks through the words and numbers of a text and knows in which line it is.
