@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# layering_selftest.sh ROOT: plants one violation after another in a copy of the sources and checks
-# that layering.sh names each, and that it accepts what only looks like one.
+# layering_selftest.sh ROOT: plants violations in a copy of the sources and checks that layering.sh names each, and
+# that it accepts what only looks like one. All of a kind are planted at once: a run takes seconds.
 set -euo pipefail
 checker=$(dirname "$0")/layering.sh
 copy=$(mktemp -d)
@@ -8,30 +8,25 @@ trap 'rm -rf "$copy"' EXIT
 cp -R "$1/host" "$copy/host"
 
 failures=0
+planted=() expected=() texts=()
 
-# refuses FILE LINE MESSAGE: the checker must fail and name the file with the message.
-refuses() {
-  local file=$copy/host/$1 output
-  mkdir -p "${file%/*}"
-  printf '%s\n' "$2" >"$file"
-  if output=$("$checker" "$copy"); then
-    echo "not noticed in $1: $2"
-    failures=$((failures + 1))
-  elif [[ $output != *"host/$1:"*"$3"* ]]; then
-    echo "noticed, but not as '$3' in $1: $output"
-    failures=$((failures + 1))
-  fi
-  rm "$file"
+# plant FILE LINE: in a file of its own beside others of that name.
+plant() {
+  local name=${1%.*}_${#planted[@]}.${1##*.}
+  planted+=("$name") texts+=("$2")
+  mkdir -p "$copy/host/${name%/*}"
+  printf '%s\n' "$2" >"$copy/host/$name"
 }
 
-accepts() {
-  local file=$copy/host/$1 output
-  printf '%s\n' "$2" >"$file"
-  output=$("$checker" "$copy") || {
-    echo "refused in $1: $2: $output"
-    failures=$((failures + 1))
-  }
-  rm "$file"
+# refuses FILE LINE MESSAGE: the checker must fail and name the file with the message.
+refuses() { plant "$1" "$2"; expected+=("$3"); }
+
+accepts() { plant "$1" "$2"; }
+
+# Runs the checker and removes what was planted.
+check() {
+  output=$("$checker" "$copy") && result=0 || result=1
+  for name in "${planted[@]}"; do rm "$copy/host/$name"; done
 }
 
 refuses moclean/core/planted.hpp '#include "moclean/motion/recording.hpp"' 'may only include: itself'
@@ -57,11 +52,24 @@ refuses moclean/solve/planted.cpp 'void f() { std::exit(1); }' 'ends the program
 refuses moclean/formats/planted.cpp '  } catch (const std::exception&) {' 'catches'
 refuses moclean/core/planted.cpp "$(printf 'int x;\n%.0s' {1..401})" 'has 401 lines'
 
+check
+((result != 0)) || { echo 'nothing was noticed'; failures=1; }
+for i in "${!planted[@]}"; do
+  lines=$(grep -F "host/${planted[i]}:" <<<"$output") || true
+  [[ $lines == *"${expected[i]}"* ]] && continue
+  echo "not noticed as '${expected[i]}' in ${planted[i]}: ${texts[i]}: $lines"
+  failures=$((failures + 1))
+done
+planted=() texts=()
+
 accepts moclean/core/planted.cpp '// a comment may say std::cout, catch (...) or #include <CL/opencl.hpp>'
 accepts moclean/formats/planted.cpp 'int n = std::snprintf(nullptr, 0, "x");'
 accepts moclean/formats/planted.cpp '#include <fstream>'
 accepts moclean/solve/opencl/planted.cpp '#include "moclean/linalg/x.hpp"'
 accepts moclean/methods/robust_pca/opencl_planted.cpp '#include "moclean/linalg/x.hpp"'
+
+check
+((result == 0)) || { echo "refused what is right: $output"; failures=$((failures + 1)); }
 
 ((failures == 0)) || exit 1
 echo 'layering: every planted violation is named'
