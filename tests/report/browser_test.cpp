@@ -52,6 +52,10 @@ TEST_P(Page, ShowsAReportThatCanBeUsed) {
   EXPECT_THAT(seen["verdict"].get<std::string>(), StartsWith("The take got better: 10.0 times"));
   EXPECT_LE(seen["overflow"], 0);
 
+  // It opens where most was gained.
+  EXPECT_EQ(seen["opening"].get<int>() % 3, 0);
+  EXPECT_GT(seen["opening"], 0);
+
   // The player moves, and stops.
   EXPECT_EQ(seen["drawing"], graphics == Graphics::webgl ? "webgl" : "canvas");
   EXPECT_EQ(seen["labels"].get<std::vector<std::string>>(), labels);
@@ -68,6 +72,15 @@ TEST_P(Page, ShowsAReportThatCanBeUsed) {
   EXPECT_EQ(seen["charts"], 3);
   EXPECT_GT(seen["cleanPixels"], 100);
   EXPECT_GT(seen["markPixels"], 20);
+  EXPECT_GT(seen["bandPixels"], 50) << "the band is not as opaque as the curve";
+  EXPECT_EQ(seen["legendsOverCharts"], 0);
+  EXPECT_EQ(seen["filledPixels"], nlohmann::json({0, 1}))
+      << "joint7 has no filled entry, joint2 has";
+
+  // What was corrected and filled stands out, in either drawing of the bodies.
+  EXPECT_EQ(seen["highlighted"], nlohmann::json({10, 10})) << "frame 30: the noisy body's joints";
+  EXPECT_EQ(seen["highlightedWhereFilled"], nlohmann::json({10, 10}))
+      << "frame 36, one of them filled";
   EXPECT_GE(seen["pickedByClicks"], 5);
 
   // The heat map and the lists lead somewhere.

@@ -52,6 +52,36 @@ TEST(ReportFigures, AreThoseComputedByHand) {
   EXPECT_NEAR(found.roughness.clean, 1 / std::sqrt(6.0), by_hand(1));
 }
 
+TEST(ReportFigures, CountWhatTheStatusSays) {
+  ReportTake take = one_error();
+  take.status = Matrix::Zero(3, 6);
+  (*take.status)(0, 1) = 1;
+  take.noisy.samples(2, 3) = nan;                             // filled
+  take.noisy.samples(2, 4) = take.clean.samples(2, 4) = nan;  // left
+  take.outliers.samples(2, 3) = take.outliers.samples(2, 4) = nan;
+
+  const ReportFigures found = figures(take);
+
+  EXPECT_EQ(found.threshold, 0);
+  EXPECT_EQ(found.corrected, 1);
+  EXPECT_EQ(found.corrected_frames, 1);
+  EXPECT_EQ(found.filled, 1);
+  EXPECT_EQ(found.left, 1);
+}
+
+TEST(ReportFigures, OpenWhereMostWasGained) {
+  ReportTake take = one_error(60);
+  take.noisy.samples(20, 3) = take.clean.samples(20, 3) = 30;  // worse, but as bad as before
+  take.noisy.samples(40, 4) = take.outliers.samples(40, 4) = 7;
+
+  EXPECT_EQ(figures(take).opening.frame, 40);
+  EXPECT_EQ(figures(take).opening.joint, 1);
+  take.truth.reset();
+  EXPECT_EQ(figures(take).opening.frame, 40) << "where most was taken away";
+  take.outliers.samples.setZero();
+  EXPECT_EQ(figures(take).opening.frame, -1);
+}
+
 TEST(ReportFigures, NameWhereItWasBad) {
   const ReportFigures found = figures(one_error());
 

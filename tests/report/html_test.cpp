@@ -89,7 +89,7 @@ TEST_F(Html, KeepsGapsAndMarks) {
   const Matrix corrections = samples_of(data["corrections"]);
   EXPECT_TRUE(std::isnan(corrections(25, 4)));
   EXPECT_GT(corrections(30, 4), 0.1);
-  EXPECT_EQ(data["figures"]["observed"], 120 * 30 - 30);
+  EXPECT_EQ(data["figures"]["observed"], 120 * 30 - 36);
 }
 
 TEST_F(Html, EscapesWhatNamesHold) {

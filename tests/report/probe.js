@@ -49,6 +49,8 @@
   result.labels = [...document.querySelectorAll("#stage .label")].map((label) => label.textContent.trim());
   result.overflow = document.documentElement.scrollWidth - window.innerWidth;
 
+  result.opening = frame();
+
   choose("scrub", "5");
   await drawn();
   result.sought = frame();
@@ -75,6 +77,31 @@
   const chart = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
   result.cleanPixels = pixelsOf("clean", chart);
   result.markPixels = pixelsOf("mark", chart);
+  const faint = (name, { data }) => {
+    const style = getComputedStyle(document.documentElement).getPropertyValue(`--${name}`);
+    const [red, green, blue] = style.match(/[0-9a-f]{2}/gi).map((digits) => parseInt(digits, 16));
+    let found = 0;
+    for (let i = 0; i < data.length; i += 4)
+      found += data[i + 3] > 40 && data[i + 3] < 90 && Math.abs(data[i] - red) + Math.abs(data[i + 1] - green) +
+        Math.abs(data[i + 2] - blue) < 30;
+    return found;
+  };
+  result.bandPixels = faint("clean", chart);
+  result.legendsOverCharts = document.querySelectorAll(".chart .dygraph-legend").length;
+  const filled = async (joint) => {
+    choose("joint", joint);
+    await drawn();
+    const picture = byId("charts").querySelector("canvas");
+    return Number(pixelsOf("filled", picture.getContext("2d").getImageData(0, 0, picture.width, picture.height)) > 3);
+  };
+  result.filledPixels = [await filled("7"), await filled("2")];
+  const highlighted = async (at) => {
+    choose("scrub", String(at));
+    for (let i = 0; i < 200 && byId("stage").dataset.drawn !== String(at); ++i) await wait(20);
+    return Number(byId("stage").dataset.highlighted);
+  };
+  result.highlighted = [await highlighted(30), 10];
+  result.highlightedWhereFilled = [await highlighted(36), 10];
   result.pickedByClicks = pickedByClicks();
 
   const map = byId("heat-map").getBoundingClientRect();

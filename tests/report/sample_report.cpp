@@ -45,6 +45,9 @@ Report sample_report(const std::string& title) {
   for (int j = 0; j < 10; ++j) take.parents.push_back(j - 1);
   for (Matrix* samples : {&take.noisy.samples, &take.clean.samples, &take.outliers.samples})
     samples->block(20, 12, 10, 3).setConstant(std::numeric_limits<double>::quiet_NaN());
+  for (Matrix* samples : {&take.noisy.samples, &take.outliers.samples})  // filled
+    samples->block(35, 6, 2, 3).setConstant(std::numeric_limits<double>::quiet_NaN());
+  take.sigma = Matrix::Constant(120, 30, 0.2);
   take.segments = {{0, 60, {.iterations = 38, .rank = 5, .residual = 9e-8, .converged = true}},
                    {60, 60, {.iterations = 1000, .rank = 7, .residual = 2e-3, .converged = false}}};
   report.parameters = {{"input", title}, {"method", "slra"}};

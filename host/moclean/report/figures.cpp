@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/denoise/sample_status.hpp"
 #include "moclean/metric/metric.hpp"
 
 namespace moclean {
@@ -55,6 +56,8 @@ void require_shapes(const ReportTake& take) {
   require_shape(take.clean, noisy, "clean take");
   require_shape(take.outliers, noisy, "outliers");
   if (take.truth) require_shape(*take.truth, noisy, "truth");
+  if (take.status) require_shape(like(noisy, *take.status), noisy, "status");
+  if (take.sigma) require_shape(like(noisy, *take.sigma), noisy, "sigma");
 }
 
 // Second differences x[f] - 2 x[f + 1] + x[f + 2].
@@ -66,16 +69,18 @@ double roughness(const Matrix& samples) {
       .root();
 }
 
-void count_corrections(const Matrix& outliers, ReportFigures& result) {
-  const MeanSquare all = mean_square(outliers);
+void count_corrections(const ReportTake& take, ReportFigures& result) {
+  const MeanSquare all = mean_square(take.outliers.samples);
   result.rms_correction = all.root();
-  result.threshold = result.rms_correction / 10;
+  result.threshold = take.status ? 0 : result.rms_correction / 10;
   result.observed = all.count;
-  for (Index f = 0; f < outliers.rows(); ++f) {
-    const Index in_frame = (outliers.row(f).array().abs() > result.threshold).count();
-    result.corrected += in_frame;
-    result.corrected_frames += in_frame > 0;
-  }
+  const Mask corrected = corrected_entries(take, result.threshold);
+  result.corrected = corrected.count();
+  result.corrected_frames = corrected.rowwise().any().count();
+  const Mask was_missing = take.noisy.samples.array().isNaN();
+  const Mask is_missing = take.clean.samples.array().isNaN();
+  result.filled = (was_missing && !is_missing).count();
+  result.left = is_missing.count();
 }
 
 void per_frame(const ReportTake& take, ReportFigures& result) {
@@ -107,6 +112,17 @@ void per_joint(const ReportTake& take, ReportFigures& result) {
   }
 }
 
+// A frame and the joint of it from which most was taken away.
+ReportFigures::WorstFrame most_corrected(const Matrix& corrections, Index frame) {
+  ReportFigures::WorstFrame worst{.frame = frame};
+  for (Index j = 0; j < corrections.cols(); ++j)
+    if (corrections(frame, j) > worst.correction) {
+      worst.joint = j;
+      worst.correction = corrections(frame, j);
+    }
+  return worst;
+}
+
 // Worst first, and no two within a quarter of a second of each other. Cleaning can spoil a frame
 // that was good, so that the larger error, before or after, counts; without truth, the correction.
 std::vector<ReportFigures::WorstFrame> worst_frames(const ReportTake& take, const Matrix& series) {
@@ -126,18 +142,41 @@ std::vector<ReportFigures::WorstFrame> worst_frames(const ReportTake& take, cons
     if (std::ranges::any_of(found,
                             [&](const auto& other) { return std::abs(other.frame - f) < apart; }))
       continue;
-    ReportFigures::WorstFrame worst{.frame = f};
-    for (Index j = 0; j < corrections.cols(); ++j)
-      if (corrections(f, j) > worst.correction) {
-        worst.joint = j;
-        worst.correction = corrections(f, j);
-      }
-    found.push_back(worst);
+    found.push_back(most_corrected(corrections, f));
   }
   return found;
 }
 
+// The frame that came nearest to the truth by the way it went; the worst one where there is none.
+ReportFigures::WorstFrame opening(const ReportTake& take, const ReportFigures& found) {
+  const ReportFigures::WorstFrame nothing{.frame = -1};
+  if (!take.truth) return found.worst_frames.empty() ? nothing : found.worst_frames.front();
+  double most = 0;
+  Index best = -1;
+  for (Index f = 0; f < found.per_frame.rows(); ++f) {
+    const double gained = found.per_frame(f, 1) - found.per_frame(f, 2);
+    if (!(gained > most)) continue;
+    most = gained;
+    best = f;
+  }
+  return best < 0 ? nothing : most_corrected(joint_corrections(take.outliers), best);
+}
+
+// What the roughness before and after tells.
+std::string smoothness(double noisy, double clean) {
+  constexpr double noticeable = 1.05;
+  if (clean == 0) return noisy > 0 ? "smooth now" : "as smooth as before";
+  if (noisy / clean >= noticeable) return fmt::format("{:.1f} times smoother", noisy / clean);
+  return clean / noisy >= noticeable ? fmt::format("{:.1f} times rougher", clean / noisy)
+                                     : "as smooth as before";
+}
+
 }  // namespace
+
+Mask corrected_entries(const ReportTake& take, double threshold) {
+  if (!take.status) return take.outliers.samples.array().abs() > threshold;
+  return take.status->array() == static_cast<double>(SampleStatus::corrected);
+}
 
 Matrix joint_corrections(const Recording& outliers) {
   const std::vector<Joint> all = joints(outliers);
@@ -154,7 +193,7 @@ Matrix joint_corrections(const Recording& outliers) {
 ReportFigures figures(const ReportTake& take) {
   require_shapes(take);
   ReportFigures result;
-  count_corrections(take.outliers.samples, result);
+  count_corrections(take, result);
   if (take.truth)
     result.fd = {.noisy = frobenius_distance(take.truth->samples, take.noisy.samples),
                  .clean = frobenius_distance(take.truth->samples, take.clean.samples)};
@@ -163,6 +202,7 @@ ReportFigures figures(const ReportTake& take) {
   per_frame(take, result);
   per_joint(take, result);
   result.worst_frames = worst_frames(take, result.per_frame);
+  result.opening = opening(take, result);
   return result;
 }
 
@@ -174,8 +214,7 @@ std::string verdict(const ReportTake& take, const ReportFigures& figures) {
         "(--truth) can tell whether it is nearer to the motion.",
         100 * static_cast<double>(figures.corrected) /
             static_cast<double>(std::max<Index>(1, figures.observed)),
-        clean < noisy && clean > 0 ? fmt::format("{:.1f} times smoother", noisy / clean)
-                                   : (clean < noisy ? "smoother" : "not smoother"));
+        smoothness(noisy, clean));
   }
   const auto& [noisy, clean] = *figures.fd;
   if (clean == noisy) return "The take is as far from the truth as before.";

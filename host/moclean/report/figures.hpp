@@ -31,10 +31,12 @@ struct ReportFigures {
   };
 
   double rms_correction = 0;  ///< of E over all entries
-  /// An entry counts as corrected if |E| exceeds this: a tenth of rms_correction. Robust PCA moves
-  /// most entries by far less, and filters move all.
+  /// Without ReportTake::status an entry counts as corrected if |E| exceeds this: a tenth of
+  /// rms_correction. Robust PCA moves most entries by far less, and filters move all. 0 with it.
   double threshold = 0;
   Index corrected = 0;         ///< entries
+  Index filled = 0;            ///< entries that were missing and are no more
+  Index left = 0;              ///< entries that are missing
   Index corrected_frames = 0;  ///< frames with such an entry
   Index observed = 0;          ///< entries that are not NaN
 
@@ -45,12 +47,18 @@ struct ReportFigures {
 
   std::vector<JointFigure> joints;       ///< in the order of joints(noisy)
   std::vector<WorstFrame> worst_frames;  ///< worst first, at most five, apart from each other
+  /// Where to look first: the frame that gained most, by the truth, else the worst one, and its
+  /// joint. Frame -1: nothing was taken away.
+  WorstFrame opening{.frame = -1};
   Matrix per_frame;  ///< root mean square per frame [frames x 1 or 3]: E; noisy - truth; clean -
                      ///< truth; NaN for a frame that is all gaps
 };
 
 /// Throws ShapeError unless the parts of the take are of one shape.
 ReportFigures figures(const ReportTake& take);
+
+/// Which entries count as corrected.
+Mask corrected_entries(const ReportTake& take, double threshold);
 
 /// |E| per frame and joint [frames x joints], Euclidean over the joint's columns; NaN where none of
 /// them is observed.

@@ -23,10 +23,10 @@ Json record(const Quantised& quantised) {
 }
 
 // Which entries count as corrected: a bit each, frame after frame, lowest bit first.
-std::string marks(const Matrix& outliers, double threshold) {
-  std::vector<std::uint8_t> bits((static_cast<std::size_t>(outliers.size()) + 7) / 8);
-  for (Index i = 0; i < outliers.size(); ++i)
-    if (std::abs(outliers.data()[i]) > threshold)
+std::string marks(const Mask& corrected) {
+  std::vector<std::uint8_t> bits((static_cast<std::size_t>(corrected.size()) + 7) / 8);
+  for (Index i = 0; i < corrected.size(); ++i)
+    if (corrected.data()[i])
       bits[static_cast<std::size_t>(i / 8)] |= static_cast<std::uint8_t>(1U << (i % 8));
   return base64(bits);
 }
@@ -39,6 +39,8 @@ Json record(const std::optional<BeforeAfter>& pair) {
 Json record(const ReportFigures& figures) {
   Json result = {{"threshold", figures.threshold},
                  {"corrected", figures.corrected},
+                 {"filled", figures.filled},
+                 {"left", figures.left},
                  {"correctedFrames", figures.corrected_frames},
                  {"observed", figures.observed},
                  {"fd", record(figures.fd)},
@@ -48,6 +50,9 @@ Json record(const ReportFigures& figures) {
                  {"perFrame", record(quantise(figures.per_frame))}};
   for (const ReportFigures::JointFigure& joint : figures.joints)
     result["joints"].push_back({{"correction", joint.correction}, {"error", record(joint.error)}});
+  result["opening"] = nullptr;
+  if (figures.opening.frame >= 0)
+    result["opening"] = {{"frame", figures.opening.frame}, {"joint", figures.opening.joint}};
   result["worstFrames"] = Json::array();
   for (const ReportFigures::WorstFrame& worst : figures.worst_frames)
     result["worstFrames"].push_back(
@@ -89,13 +94,14 @@ Json record(const ReportTake& take) {
                  {"verdict", verdict(take, all)},
                  {"figures", record(all)},
                  {"corrections", record(quantise(joint_corrections(take.outliers)))},
-                 {"marks", marks(take.outliers.samples, all.threshold)}};
+                 {"marks", marks(corrected_entries(take, all.threshold))}};
   for (const Joint& joint : parts)
     result["joints"].push_back(
         {{"name", joint.name}, {"first", joint.first_column}, {"columns", joint.columns}});
   result["clips"]["noisy"] = record(quantise(take.noisy.samples));
   result["clips"]["clean"] = record(quantise(take.clean.samples));
   if (take.truth) result["clips"]["truth"] = record(quantise(take.truth->samples));
+  result["sigma"] = take.sigma ? record(quantise(*take.sigma)) : Json(nullptr);
   result["segments"] = Json::array();
   for (const DenoisedSegment& segment : take.segments)
     result["segments"].push_back(record(segment));

@@ -19,6 +19,9 @@ struct ReportTake {
   std::optional<Recording> truth =
       {};                   ///< same shape; the report then says whether the take got better
   Recording outliers = {};  ///< E, same shape: what was taken away; NaN where there is a gap
+  std::optional<Matrix> status = {};  ///< of every sample, see status_numbers(); without it what
+                                      ///< counts as corrected is told from E
+  std::optional<Matrix> sigma = {};   ///< standard deviations of `clean`, drawn as a band
   std::vector<int> parents =
       {};  ///< per joint of joints(noisy): the joint it hangs on, -1 for a root;
            ///< empty: no skeleton, joints are drawn as a cloud of points

@@ -14,7 +14,10 @@
   }
 
   // rows: [frame, value...]; series: { label: { colour: name of the style sheet, ...dygraphs' } }.
+  // The names stand above the chart, where they cover no curve.
   report.createChart = (element, rows, series, state, options = {}) => {
+    const legend = report.element("div", { class: "legend" });
+    element.before(legend);
     const names = Object.keys(series);
     const colours = () => names.map((name) => report.colour(series[name].colour));
     const graph = new Dygraph(element, rows, {
@@ -24,6 +27,7 @@
       interactionModel: interaction(),
       connectSeparatedPoints: false,
       legend: "always",
+      labelsDiv: legend,
       labelsKMB: false,
       digitsAfterDecimal: 4,
       highlightCircleSize: 3,
@@ -49,6 +53,6 @@
     state.listen((values, changed) => { if (changed.frame) place(); });
     report.onThemeChange(() => graph.updateOptions({ colors: colours(), ...themed() }));
     new ResizeObserver(() => { graph.resize(); place(); }).observe(element);
-    return { graph, place };
+    return { graph, place, legend };
   };
 })(window.mocleanReport);

@@ -1,4 +1,5 @@
-// The channels of the picked joint over the frames: noisy, clean, truth, corrected entries as dots.
+// The channels of the picked joint over the frames: noisy, clean, truth, corrected and filled entries as dots, twice
+// the standard deviation of the clean one as a band.
 (function (report) {
   "use strict";
 
@@ -7,12 +8,13 @@
   const drawings = {
     noisy: { strokeWidth: 0.8 },
     mark: { strokeWidth: 0, drawPoints: true, pointSize: 1.6 },
+    filled: { strokeWidth: 0, drawPoints: true, pointSize: 1.6 },
     truth: { strokeWidth: 2.6 },
     clean: { strokeWidth: 1.3 },
   };
 
-  // [frame, noisy, noisy again where it was corrected, truth if there is one, clean]: what comes later
-  // is drawn over what was before. null breaks a line.
+  // [frame, noisy, noisy again where it was corrected, truth if there is one, clean, clean again where it was filled]:
+  // what comes later is drawn over what was before. null breaks a line.
   function rowsOf(take, column) {
     const rows = [];
     for (let frame = 0; frame < take.frames; ++frame) {
@@ -21,18 +23,49 @@
         return Number.isNaN(value) ? null : value;
       });
       const [noisy, clean, ...truth] = values;
-      rows.push([frame, noisy, take.isMarked(frame, column) ? noisy : null, ...truth, clean]);
+      rows.push([frame, noisy, take.isMarked(frame, column) ? noisy : null, ...truth, clean,
+                 take.isFilled(frame, column) ? clean : null]);
     }
     return rows;
   }
 
   function seriesOf(take) {
-    const keys = take.clip("truth") ? ["noisy", "mark", "truth", "clean"] : ["noisy", "mark", "clean"];
+    const keys = ["noisy", "mark", ...(take.clip("truth") ? ["truth"] : []), "clean", "filled"];
     const name = (key) => key === "mark" ? "corrected" : key;
     return Object.fromEntries(keys.map((key) => [name(key), { colour: key, drawing: drawings[key] }]));
   }
 
-  const titleOf = (take, joint, index) => take.joints[joint].columns === 3 ? "xyz"[index] : "";
+  // Clean -+ 2 sigma, behind the curves: a piece for every run of frames that have both.
+  function drawBand(take, column, pen, graph) {
+    if (!take.sigma) return;
+    const clean = take.clip("clean").samples;
+    const [from, to] = graph.xAxisRange();
+    const first = Math.max(0, Math.floor(from));
+    const last = Math.min(take.frames - 1, Math.ceil(to));
+    let piece = [];
+    const close = () => {
+      if (piece.length > 0) {
+        pen.beginPath();
+        for (const [x, upper] of piece) pen.lineTo(x, upper);
+        for (const [x, , lower] of piece.reverse()) pen.lineTo(x, lower);
+        pen.fill();
+      }
+      piece = [];
+    };
+    pen.save();
+    pen.globalAlpha = 0.25;
+    pen.fillStyle = report.colour("clean");
+    for (let frame = first; frame <= last; ++frame) {
+      const middle = clean.value(frame, column);
+      const reach = 2 * take.sigma.value(frame, column);
+      if (Number.isNaN(middle + reach)) close();
+      else piece.push([graph.toDomXCoord(frame), graph.toDomYCoord(middle + reach), graph.toDomYCoord(middle - reach)]);
+    }
+    close();
+    pen.restore();
+  }
+
+  const titleOf = (take, joint, index) => take.joints[joint].columns > 1 ? "xyz"[index] : "";
 
   class Curves {
     constructor(take, state) {
@@ -60,6 +93,8 @@
         const rows = rowsOf(this.take, this.take.joints[joint].first + i);
         this.charts.push(report.createChart(box, rows, seriesOf(this.take), this.state, {
           ylabel: titleOf(this.take, joint, i),
+          underlayCallback: (pen, area, graph) =>
+            drawBand(this.take, this.take.joints[this.state.values.joint].first + i, pen, graph),
           zoomCallback: (from, to) => this.zoom([from, to]),
         }));
       }
@@ -80,7 +115,10 @@
     choice.value = String(state.values.joint);
     choice.addEventListener("change", () => state.set({ joint: Number(choice.value) }));
     byId("unit").textContent = take.unit;
-    byId("threshold").textContent = report.number(take.figures.threshold) + (take.unit ? ` ${take.unit}` : "");
+    if (take.figures.threshold > 0)
+      byId("threshold").textContent =
+        ` by more than ${report.number(take.figures.threshold)}${take.unit ? ` ${take.unit}` : ""}`;
+    byId("band").hidden = take.sigma === null;
     const curves = new Curves(take, state);
     byId("whole").addEventListener("click", () => curves.zoom(null));
     state.listen((values, changed) => {

@@ -39,6 +39,7 @@
       this.corrections = new Samples(record.corrections);
       this.perFrame = new Samples(record.figures.perFrame);
       this.marks = bytesOf(record.marks);
+      this.sigma = record.sigma ? new Samples(record.sigma) : null;
       this.columns = this.clips[0].samples.columns;
       this.points = this.joints.map((joint, index) => index)
         .filter((index) => this.joints[index].columns === 3);
@@ -62,10 +63,31 @@
       return (this.marks[bit >> 3] >> (bit & 7)) & 1;
     }
 
-    isJointMarked(frame, joint) {
+    // Whether a sample was missing and was filled, or is still missing ("left").
+    isFilled(frame, column) { return this.isMissing("noisy", frame, column) && !this.isMissing("clean", frame, column); }
+    isLeft(frame, column) { return this.isMissing("clean", frame, column); }
+    isMissing(key, frame, column) { return Number.isNaN(this.clip(key).samples.value(frame, column)); }
+
+    hasAny(frame, joint, test) {
       const { first, columns } = this.joints[joint];
-      for (let c = first; c < first + columns; ++c) if (this.isMarked(frame, c)) return true;
+      for (let c = first; c < first + columns; ++c) if (test(frame, c)) return true;
       return false;
+    }
+
+    isJointMarked(frame, joint) { return this.hasAny(frame, joint, (f, c) => this.isMarked(f, c)); }
+    isJointFilled(frame, joint) { return this.hasAny(frame, joint, (f, c) => this.isFilled(f, c)); }
+    isJointLeft(frame, joint) { return this.hasAny(frame, joint, (f, c) => this.isLeft(f, c)); }
+
+    // The colour that stands out on a joint of a body in a frame; null for one that does not: what was wrong shows in
+    // the noisy body, what was filled in the clean one. Both drawings of the bodies ask here.
+    highlight(key, frame, joint) {
+      if (key === "noisy" && this.isJointMarked(frame, joint)) return "mark";
+      if (key === "clean" && this.isJointFilled(frame, joint)) return "filled";
+      return null;
+    }
+
+    highlights(frame) {
+      return this.clips.map(({ key }) => this.points.filter((joint) => this.highlight(key, frame, joint)).length);
     }
 
     // Distance of the joint in one clip from the same in another; NaN in a gap of either.

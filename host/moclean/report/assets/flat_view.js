@@ -18,6 +18,7 @@
     draw(panels) {
       const { pen, view } = this;
       pen.clearRect(0, 0, view.width, view.height);
+      this.highlighted = 0;
       for (const panel of panels) {
         pen.save();
         pen.beginPath();
@@ -77,8 +78,9 @@
       for (const [joint, place] of places) {
         const pixel = place && view.project(place, panel);
         if (!pixel) continue;
-        const isMarked = clip.key === "noisy" && take.isJointMarked(frame, joint);
-        this.dot(pixel, isMarked ? 5 : 3, isMarked ? report.colour("mark") : colour);
+        const highlight = take.highlight(clip.key, frame, joint);
+        this.dot(pixel, highlight ? 5 : 3, highlight ? report.colour(highlight) : colour);
+        this.highlighted += highlight ? 1 : 0;
         if (joint !== picked) continue;
         pen.beginPath();
         pen.arc(...pixel, 9, 0, 2 * Math.PI);

@@ -20,7 +20,8 @@
     const unit = take.unit ? ` ${take.unit}` : "";
     const percent = `${(100 * all.corrected / Math.max(1, all.observed)).toFixed(1)} %`;
     if (all.fd) figure("FD from the truth", pair(all.fd), `before → after,${unit || " unit of the file"}`);
-    figure("Entries corrected", percent, `by more than ${number(all.threshold)}`);
+    figure("Entries corrected", percent, all.threshold > 0 ? `by more than ${number(all.threshold)}` : "");
+    if (all.filled + all.left > 0) figure("Entries filled", String(all.filled), `${all.left} left missing`);
     figure("Frames corrected", `${all.correctedFrames} of ${take.frames}`);
     if (all.fd) {
       figure("Joints nearer to the truth", `${all.nearerJoints} of ${take.joints.length}`);

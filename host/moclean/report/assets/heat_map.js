@@ -87,7 +87,8 @@
       const cells = element("canvas", { width: columns, height: take.joints.length });
       const pen = cells.getContext("2d");
       const image = pen.createImageData(columns, take.joints.length);
-      const gap = report.colour("gap").match(/[0-9a-f]{2}/gi).map((digits) => parseInt(digits, 16));
+      const [gap, filled] = ["gap", "filled"].map((name) =>
+        report.colour(name).match(/[0-9a-f]{2}/gi).map((digits) => parseInt(digits, 16)));
       for (let j = 0, i = 0; j < take.joints.length; ++j)
         for (let c = 0; c < columns; ++c, i += 4) {
           const last = Math.max(1, Math.floor((c + 1) * take.frames / columns));
@@ -96,7 +97,8 @@
             const value = values[f * take.joints.length + j];
             if (!(worst >= value) && !Number.isNaN(value)) worst = value;
           }
-          image.data.set(Number.isNaN(worst) ? gap : shade(worst / this.largest), i);
+          const without = take.isJointFilled(last - 1, j) ? filled : gap;
+          image.data.set(Number.isNaN(worst) ? without : shade(worst / this.largest), i);
           image.data[i + 3] = 255;
         }
       pen.putImageData(image, 0, 0);
@@ -169,7 +171,7 @@
       if (joint === null) return;
       const value = this.values[frame * this.take.joints.length + joint];
       byId("heat-value").textContent = `frame ${frame}, ${this.take.joints[joint].name}: ` +
-        (Number.isNaN(value) ? "gap" : number(value));
+        (Number.isNaN(value) ? (this.take.isJointFilled(frame, joint) ? "filled" : "gap") : number(value));
     }
 
     key(event) {

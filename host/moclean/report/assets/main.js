@@ -11,7 +11,7 @@
       apart: window.innerWidth > 520, shown: take.clips.map((clip) => clip.key),
     });
     const worst = report.showHeadline(take, state);
-    const begin = take.figures.worstFrames[0];
+    const begin = take.figures.opening;
     state.set({ joint: begin ? begin.joint : worst, frame: begin ? begin.frame : 0 });
     report.showPlayer(take, state);
     report.showCurves(take, state);

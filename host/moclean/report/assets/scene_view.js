@@ -9,13 +9,14 @@
     constructor(scene, take, clip, thickness) {
       Object.assign(this, { take, clip, thickness });
       this.group = new THREE.Group();
-      this.materials = { clip: new THREE.MeshLambertMaterial(), mark: new THREE.MeshLambertMaterial(),
+      this.highlight = clip.key === "clean" ? "filled" : "mark";
+      this.materials = { clip: new THREE.MeshLambertMaterial(), highlight: new THREE.MeshLambertMaterial(),
                          ink: new THREE.MeshBasicMaterial({ transparent: true, opacity: 0.35 }) };
       const sphere = new THREE.SphereBufferGeometry(1, 14, 10);
       const cylinder = new THREE.CylinderBufferGeometry(1, 1, 1, 10);
       this.bones = this.add(cylinder, this.materials.clip, take.bones.length);
       this.joints = this.add(sphere, this.materials.clip, take.points.length);
-      this.marks = this.add(sphere, this.materials.mark, clip.key === "noisy" ? take.points.length : 0);
+      this.highlights = this.add(sphere, this.materials.highlight, clip.key === "truth" ? 0 : take.points.length);
       this.picked = this.add(sphere, this.materials.ink, 1);
       scene.add(this.group);
     }
@@ -55,11 +56,13 @@
     place({ frame, joint: picked, up }) {
       const { take, clip, thickness } = this;
       const places = new Map(take.points.map((joint) => [joint, take.position(clip, frame, joint, up)]));
+      this.highlighted = 0;
       const size = take.bones.length > 0 ? thickness : 1.6 * thickness;
       take.points.forEach((joint, index) => {
         this.ball(this.joints, index, places.get(joint), size);
-        if (this.marks)
-          this.ball(this.marks, index, places.get(joint), take.isJointMarked(frame, joint) ? 1.7 * size : 0);
+        const isHighlighted = take.highlight(clip.key, frame, joint) !== null;
+        if (this.highlights) this.ball(this.highlights, index, places.get(joint), isHighlighted ? 1.7 * size : 0);
+        this.highlighted += isHighlighted && places.get(joint) ? 1 : 0;
       });
       take.bones.forEach(([parent, joint], index) => this.stick(index, places.get(parent), places.get(joint)));
       this.ball(this.picked, 0, places.get(picked) || null, 3 * size);
@@ -67,7 +70,7 @@
 
     colour() {
       this.materials.clip.color.set(report.colour(this.clip.key));
-      this.materials.mark.color.set(report.colour("mark"));
+      this.materials.highlight.color.set(report.colour(this.highlight));
       this.materials.ink.color.set(report.colour("ink"));
     }
   }
@@ -105,6 +108,9 @@
         body.colour();
         body.place(view.state.values);
       }
+      this.highlighted = 0;
+      for (const panel of panels)
+        for (const body of this.bodies) if (panel.clips.includes(body.clip)) this.highlighted += body.highlighted;
       renderer.setScissorTest(false);
       renderer.clear();
       renderer.setScissorTest(true);

@@ -185,6 +185,7 @@
         this.requested = false;
         this.drawing.draw(this.panels());
         this.stage.dataset.drawn = String(this.state.values.frame);
+        this.stage.dataset.highlighted = String(this.drawing.highlighted);
       });
     }
   };
