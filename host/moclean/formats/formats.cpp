@@ -11,14 +11,16 @@
 #include "moclean/formats/c3d.hpp"
 #include "moclean/formats/csv.hpp"
 #include "moclean/formats/extension.hpp"
+#include "moclean/formats/mot.hpp"
 #include "moclean/formats/npy.hpp"
 #include "moclean/formats/trc.hpp"
+#include "moclean/formats/tsv.hpp"
 
 namespace moclean {
 
 std::span<const Format* const> formats() {
-  static constexpr std::array<const Format*, 6> all = {
-      &bvh_format, &amc_format, &c3d_format, &trc_format, &csv_format, &npy_format,
+  static constexpr std::array<const Format*, 9> all = {
+      &bvh_format, &amc_format, &c3d_format, &trc_format, &csv_format, &tsv_format, &mot_format, &sto_format, &npy_format,
   };
   return all;
 }
