@@ -13,17 +13,17 @@
 namespace moclean {
 namespace {
 
-// Letters of a specification, group by group, up to as many as there are columns and one more.
+// Letters of a specification, group by group; it stops where there are far more than columns.
 class SpecificationReader {
  public:
-  SpecificationReader(std::string_view text, std::size_t width) : text_(text), width_(width) {}
+  SpecificationReader(std::string_view text, std::size_t width)
+      : text_(text), width_(width), most_(10 * width + 1000) {}
 
   std::string letters() {
     std::string found = sequence(0);
     if (place_ < text_.size()) fail("a ( before this )");
-    if (found.size() > width_)
-      fail_count(repeats_ || is_cut_ ? "more" : fmt::to_string(found.size()));
-    if (found.size() < width_) fail_count(fmt::to_string(found.size()));
+    if (is_cut_) fail_count("far more");
+    if (found.size() != width_) fail_count(fmt::to_string(found.size()));
     return found;
   }
 
@@ -72,11 +72,10 @@ class SpecificationReader {
       ++place_;
       if (has_count || depth > 0 || place_ < text_.size())
         fail("a * behind the last group alone, without a number before it");
-      repeats_ = true;
       times = found.size() < width_ ? (width_ - found.size() + part.size() - 1) / part.size() : 0;
     }
     for (; times > 0; --times) {
-      if (found.size() > width_) {
+      if (found.size() > most_) {
         is_cut_ = true;
         return;
       }
@@ -86,9 +85,9 @@ class SpecificationReader {
 
   static constexpr std::string_view letters_ = "tixyzcpo";
   std::string_view text_;
-  std::size_t width_;
+  std::size_t width_, most_;
   std::size_t place_ = 0;
-  bool repeats_ = false, is_cut_ = false;
+  bool is_cut_ = false;
 };
 
 // The name of a point by that of one of its columns; empty if it tells none.

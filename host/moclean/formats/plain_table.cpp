@@ -173,7 +173,7 @@ class PlainHead {
     if (!comment_.empty() && commented.size() == count) {
       names_ = commented;
     } else if (has_options()) {
-      names_.assign(count, "");
+      for (std::size_t c = 0; c < count; ++c) names_.push_back(fmt::format("column{}", c));
     } else {
       fail(
           "expected a line of column names, found numbers; --columns or --layout say what they "

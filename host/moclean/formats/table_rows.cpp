@@ -160,9 +160,12 @@ class RowReader {
     if (use.kind == CellUse::Kind::skipped) return true;
     double value = no_sample;
     const std::string_view text = cells.text();
-    if (!table_number(text, shape_.decimal, value) && !says_missing(text)) {
-      rows_.stopped = {lines_.number(), column, std::string(text)};
-      return false;
+    if (!table_number(text, shape_.decimal, value)) {
+      if (!says_missing(text)) {
+        rows_.stopped = {lines_.number(), column, std::string(text)};
+        return false;
+      }
+      value = no_sample;
     }
     if (use.kind == CellUse::Kind::sample)
       sample(use.place, value, cells.raw());
@@ -172,8 +175,9 @@ class RowReader {
   }
 
   void sample(std::size_t place, double value, std::string_view text) {
-    samples_[place] = value;
-    if (!std::isnan(value) || has_missing_) return;
+    const bool is_missing = std::isnan(value);
+    samples_[place] = is_missing ? no_sample : value;  // of either sign
+    if (!is_missing || has_missing_) return;
     rows_.missing_text = text;
     has_missing_ = true;
   }
