@@ -113,24 +113,27 @@ TEST_P(ColumnNames, TellTheRoles) {
 
 INSTANTIATE_TEST_SUITE_P(
     Others, ColumnNames,
-    testing::Values(NamedRoles{"Frame,Time (Seconds),A_x,A_y,A_z", "itccc"},
-                    NamedRoles{"A.x,A.y,A.z,time_ms,frame_index", "cccti"},
-                    NamedRoles{"timestamp,A_x,A_y,A_z,label", "tccco"},
-                    NamedRoles{"TIME,a,b", "tpp"}, NamedRoles{"t(s),t [s],a", "top"},
-                    NamedRoles{"fnum,A_x,A_y,A_z", "iccc"},
-                    NamedRoles{"A_x,A_y,A_likelihood,B_x,B_y,B_likelihood", "cclccl"},
-                    NamedRoles{"A_x,A_y,A_z,A_visibility,A_presence", "cccll"},
-                    NamedRoles{"x,y,score,x,y,score", "cclccl"},
-                    NamedRoles{"x,y,confidence,x.1,y.1,confidence.1", "cclccl"},
-                    NamedRoles{"noseX,noseY,noseScore", "ccl"}, NamedRoles{"c_A,x_A,y_A", "lcc"},
-                    NamedRoles{"A_x,A_y,A_z,A_error,A_ncams,A_score", "cccool"},
-                    NamedRoles{"A_x,A_y,A_z,A_rot_x,A_rot_y,A_rot_z", "cccaaa"},
-                    NamedRoles{"A.x,A.y,A.z,A.qw,A.qx,A.qy,A.qz", "cccaaaa"},
-                    NamedRoles{"A.X,A.Y,A.Z,B.X,B.Y,B.Z,B.W", "cccaaaa"},
-                    NamedRoles{"A.Xposition,A.Yposition,A.Zposition,A.Xrotation", "ccca"},
-                    NamedRoles{"A_x,A_y,A_z,RotX,RotY,RotZ", "cccaaa"},
-                    NamedRoles{"A_x,A_y,A_z,A_vel_x,A_vel_y,A_vel_z,speed", "cccoooo"},
-                    NamedRoles{"A_x,A_y,A_z,B_x", "ccco"}),
+    testing::Values(
+        NamedRoles{"Frame,Time (Seconds),A_x,A_y,A_z", "itccc"},
+        NamedRoles{"A.x,A.y,A.z,time_ms,frame_index", "cccti"},
+        NamedRoles{"timestamp,A_x,A_y,A_z,label", "tccco"}, NamedRoles{"TIME,a,b", "tpp"},
+        NamedRoles{"t(s),t [s],a", "top"}, NamedRoles{"fnum,A_x,A_y,A_z", "iccc"},
+        NamedRoles{"A_x,A_y,A_likelihood,B_x,B_y,B_likelihood", "cclccl"},
+        NamedRoles{"A_x,A_y,A_z,A_visibility,A_presence", "cccll"},
+        NamedRoles{"x,y,score,x,y,score", "cclccl"},
+        NamedRoles{"x,y,confidence,x.1,y.1,confidence.1", "cclccl"},
+        NamedRoles{"noseX,noseY,noseScore", "ccl"}, NamedRoles{"c_A,x_A,y_A", "lcc"},
+        NamedRoles{"A_x,A_y,A_z,A_error,A_ncams,A_score", "cccool"},
+        NamedRoles{"A_x,A_y,A_z,A_rot_x,A_rot_y,A_rot_z", "cccaaa"},
+        NamedRoles{"A.x,A.y,A.z,A.qw,A.qx,A.qy,A.qz", "cccaaaa"},
+        NamedRoles{"A.X,A.Y,A.Z,B.X,B.Y,B.Z,B.W", "cccaaaa"},
+        NamedRoles{"A.Xposition,A.Yposition,A.Zposition,A.Xrotation", "ccca"},
+        NamedRoles{"A_x,A_y,A_z,RotX,RotY,RotZ", "cccaaa"},
+        NamedRoles{"A_x,A_y,A_z,A_vel_x,A_vel_y,A_vel_z,speed", "cccoooo"},
+        NamedRoles{"A_x,A_y,A_z,B_x", "ccco"}, NamedRoles{"class,x1,y1,z1,v1", "occcl"},
+        NamedRoles{"x0,y0,c0,x1,y1,c1", "cclccl"}, NamedRoles{"TX,TY,TZ,RX,RY,RZ", "cccaaa"},
+        NamedRoles{"p_X,p_Y,p_Z,p_Ox,p_Oy,p_Oz", "cccaaa"}, NamedRoles{"M0X,M0Y,M0Z", "ccc"},
+        NamedRoles{"A_x,A_y,box_x,box_y,box_w,box_h", "ccoooo"}),
     [](const auto& test) { return "kind" + std::to_string(test.index); });
 
 TEST(ColumnRoles, TakeAConfidenceToItsPoint) {
@@ -145,9 +148,11 @@ TEST(ColumnRoles, TakeAConfidenceToItsPoint) {
 TEST(ColumnRoles, TakeAColumnWithoutANameForAnIndexOnlyIfItCounts) {
   const std::vector<std::string> names = {"Unnamed: 0", "A_x", "A_y", "A_z", ""};
   const Matrix counting{{5, 1, 2, 3, test::nan}, {6, 1, 2, 3, test::nan}};
-  const Matrix other{{5, 1, 2, 3, test::nan}, {8, 1, 2, 3, test::nan}};
+  const Matrix thinned{{5, 1, 2, 3, test::nan}, {8, 1, 2, 3, test::nan}};
+  const Matrix other{{5, 1, 2, 3, test::nan}, {5.5, 1, 2, 3, test::nan}};
 
   EXPECT_EQ(letters_of(recognise_columns(names, counting)), "iccco");
+  EXPECT_EQ(letters_of(recognise_columns(names, thinned)), "iccco");
   EXPECT_EQ(letters_of(recognise_columns(names, other)), "occco");
   EXPECT_EQ(letters_of(recognise_columns({"id", "b", ""}, Matrix{{1, 1, 1}, {2, 1, 1}})), "ipp");
   EXPECT_EQ(letters_of(recognise_columns({"id", "b", ""}, Matrix{{1, 1, test::nan}})), "ppo");

@@ -83,15 +83,20 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(Heads, TableSpelling,
                          testing::Values("A.x,A.y,A.z\nmm,mm,mm\n1.5,2,\n4,5,6\n",
                                          "A.x,A.y,A.z\n[mm],[mm],[mm]\n1.5,2,\n4,5,6\n",
+                                         "A,,\nX,Y,Z\n1.5,2,\n4,5,6\n",
+                                         ",A,,\nFrame,x,y,z\n,mm,mm,mm\n1,1.5,2,\n2,4,5,6\n",
+                                         "\"A.x\" \"A.y\" \"A.z\"\n\"1\" 1.5 2 NA\n\"2\" 4 5 6\n",
                                          "# made by numpy\n# A.x,A.y,A.z\n1.5,2,nan\n4,5,6\n",
                                          "#A.x A.y A.z\n1.5 2 nan\n4 5 6\n"));
 
 INSTANTIATE_TEST_SUITE_P(Missing, TableSpelling, testing::ValuesIn([] {
                            std::vector<std::string> texts;
                            for (const char* word :
-                                {"nan", "NaN", "-nan", "-nan(ind)", "1.#IND", "-1.#IND00",
-                                 "1.#QNAN", "-1.#QNAN0", "NA", "N/A", "#N/A", "null", "NULL",
-                                 "None", "-", "--", "\"\"", " "})
+                                {"nan",       "NaN",     "-nan",      "-nan(ind)", "1.#IND",
+                                 "-1.#IND00", "1.#QNAN", "-1.#QNAN0", "NA",        "N/A",
+                                 "#N/A",      "#NUM!",   "<NA>",      ".",         "missing",
+                                 "null",      "NULL",    "None",      "-",         "--",
+                                 "\"\"",      " "})
                              texts.push_back(fmt::format("A.x,A.y,A.z\n1.5,2,{}\n4,5,6\n", word));
                            return texts;
                          }()));
@@ -230,7 +235,7 @@ TEST(Table, PassesTextThroughAndRefusesItAmongNumbers) {
                  "tiny.csv:4: expected a number, found 'x' in column 1 ('a')");
   expect_failure("a,b\nx,2\n3,4\n", "tiny.csv:2: expected a number, found 'x' in column 1 ('a')");
   expect_failure("A.x,A.y\nlow,2\nhigh,4\n", "tiny.csv:2: expected a number, found 'low'");
-  expect_failure("a,b\nx,y\n", "tiny.csv:2: expected a number, found 'x'");
+  expect_failure("a,b\nlow,high\n", "tiny.csv:2: expected a number, found 'low'");
 }
 
 TEST(Table, RefusesRowsOfOtherLengths) {

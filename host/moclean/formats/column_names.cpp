@@ -80,13 +80,13 @@ bool is_angle_word(const std::string& word) {
 }
 
 bool is_vector_word(const std::string& word) {
-  return is_one_of(word, {"vel", "velocity", "acc", "accel", "acceleration", "gyro", "mag", "force",
-                          "moment", "torque", "power", "grf", "jerk", "omega", "angvel"});
+  return is_one_of(word, {"vel", "velocity", "acc", "acce", "accel", "acceleration", "gyro", "mag",
+                          "force", "moment", "torque", "power", "grf", "jerk", "omega", "angvel"});
 }
 
-constexpr std::array<std::string_view, 12> confidence_words = {
-    "likelihood", "confidence",  "conf", "score",     "visibility", "presence",
-    "prob",       "probability", "vis",  "certainty", "c",          "p"};
+constexpr std::array<std::string_view, 14> confidence_words = {
+    "likelihood",  "confidence", "conf",      "score", "visibility", "presence", "prob",
+    "probability", "vis",        "certainty", "c",     "p",          "v",        "s"};
 
 // Name without blanks, joining characters and unit, in lower case.
 std::string squeezed(std::string_view name) {
@@ -189,10 +189,16 @@ NamedQuantity named_quantity(std::string_view name) {
     return NamedQuantity::confidence;
   if (std::any_of(words.begin(), words.end(), is_angle_word)) return NamedQuantity::angle;
   if (std::any_of(words.begin(), words.end(), is_vector_word)) return NamedQuantity::rate_of_change;
-  // Vectors and quaternions of one letter: `Fx`, `q_w`.
-  if (is_one_of(text, {"q", "fx", "fy", "fz", "mx", "my", "mz", "f", "m"}))
-    return text[0] == 'q' ? NamedQuantity::angle : NamedQuantity::rate_of_change;
   return NamedQuantity::none;
+}
+
+NamedQuantity quantity_of_letter(std::string_view point) {
+  if (point.empty() || (point.size() > 1 && is_letter(point[point.size() - 2])))
+    return NamedQuantity::none;
+  const auto letter = static_cast<char>(point.back() | 0x20);
+  if (letter == 'f' || letter == 'm') return NamedQuantity::rate_of_change;
+  const bool is_angle = letter == 'r' || letter == 'o' || letter == 'q';
+  return is_angle ? NamedQuantity::angle : NamedQuantity::none;
 }
 
 double seconds_per_unit(std::string_view name) {
@@ -218,6 +224,9 @@ std::vector<std::string> points_judged_by(std::string_view full_name) {
   for (const std::string_view word : confidence_words) {
     if (name == word) found.emplace_back();
     if (name.size() <= word.size()) continue;
+    const auto behind = name.begin() + static_cast<std::ptrdiff_t>(word.size());
+    if (name.starts_with(word) && std::all_of(behind, name.end(), is_digit))
+      found.push_back(name.substr(word.size()));
     const std::size_t rest = name.size() - word.size();
     if (name.ends_with(word)) {
       if (joins(name[rest - 1]))

@@ -50,12 +50,16 @@ enum class NamedQuantity { none, time, frame, running, confidence, angle, rate_o
 /// are no places.
 NamedQuantity named_quantity(std::string_view name);
 
+/// What a last letter by itself tells of names like `RX`, `pelvis_Oy` or `Fz`: rotations,
+/// orientations, quaternions, forces, moments.
+NamedQuantity quantity_of_letter(std::string_view point);
+
 /// Seconds per unit of a time column as its name says, `time_ms` or `Time (Seconds)`; 0 if it does
 /// not.
 double seconds_per_unit(std::string_view name);
 
 /// Points, in lower case, of which a column may say how sure they are: `hip` of `Hip_likelihood`,
-/// `hip.score`, `confidence hip`, `hipScore`; the empty one of a bare `likelihood`.
+/// `hip.score`, `confidence hip`, `hipScore`, `1` of `v1`; the empty one of a bare `likelihood`.
 std::vector<std::string> points_judged_by(std::string_view name);
 
 /// Lower case of ASCII.

@@ -21,13 +21,12 @@ bool is_empty(const Matrix& rows, std::size_t column) {
   return rows.col(static_cast<Index>(column)).array().isNaN().all();
 }
 
-// Whole numbers, each one more than the one before.
+// Whole numbers, each above the one before: frames may have been left out.
 bool counts(const Matrix& rows, std::size_t column) {
   const auto values = rows.col(static_cast<Index>(column));
-  if (rows.rows() < 2 || !(values[0] == std::floor(values[0]))) return false;
-  for (Index r = 1; r < rows.rows(); ++r)
-    if (values[r] != values[r - 1] + 1) return false;
-  return true;
+  for (Index r = 0; r < rows.rows(); ++r)
+    if (values[r] != std::floor(values[r]) || (r > 0 && !(values[r] > values[r - 1]))) return false;
+  return rows.rows() > 1;
 }
 
 // Columns that one reading of names makes a point.
@@ -111,17 +110,21 @@ class RoleFinder {
     return std::ranges::none_of(columns, [&](std::size_t c) { return is_taken_[c]; });
   }
 
-  // Quaternions, and sets whose names tell of something else than places.
+  // Quaternions, boxes (x, y, width, height), and sets whose names tell of something else than
+  // places.
   void leave_out(const AxisGroup& group) {
-    const bool is_quaternion = !group.of('w').empty() && !group.of('z').empty();
+    const bool has_w = !group.of('w').empty();
     NamedQuantity quantity = named_quantity(group.point);
-    if (group.point.size() == 1 && group.style != NameStyle::glued) quantity = NamedQuantity::none;
+    if (group.style == NameStyle::glued && quantity == NamedQuantity::none)
+      quantity = quantity_of_letter(group.point);
     const bool is_vector = quantity == NamedQuantity::rate_of_change;
-    if (!is_quaternion && !is_vector && quantity != NamedQuantity::angle) return;
+    if (!has_w && !is_vector && quantity != NamedQuantity::angle) return;
     for (const auto& columns : group.columns)
       for (const std::size_t c : columns) {
         left_out_.insert(c);
-        found_.roles[c] = is_vector ? ColumnRole::plain : ColumnRole::angle;
+        const bool is_angle =
+            !is_vector && (quantity == NamedQuantity::angle || !group.of('z').empty());
+        if (is_angle) found_.roles[c] = ColumnRole::angle;
       }
   }
 

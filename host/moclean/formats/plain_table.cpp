@@ -51,7 +51,7 @@ bool are_numbers(std::string_view line, char separator) {
   std::size_t count = 0;
   for (TableCells cells(line, separator); cells.next();) {
     const bool is_number = is_number_cell(cells.text());
-    if (!is_number && !cells.text().empty()) return false;
+    if (!is_number && !says_missing(cells.text())) return false;
     count += is_number;
   }
   return count > 0;
@@ -69,8 +69,9 @@ char separator_between(std::string_view names, std::string_view row) {
   }
   if (first) return first;
   const std::size_t words = count_cells(names, between_words);
+  const std::size_t cells = count_cells(row, between_words);
   const bool are_words =
-      words > 1 && words == count_cells(row, between_words) && are_numbers(row, between_words);
+      words > 1 && (words == cells || words + 1 == cells) && are_numbers(row, between_words);
   return are_words ? between_words : ',';
 }
 
@@ -82,6 +83,8 @@ class PlainHead {
     separator_line();
     comments();
     names();
+    axis_line();
+    row_names();
     unit_line();
     shape_.least_cells = named_columns(names_);
     shape_.roles.names = names_;
@@ -188,12 +191,64 @@ class PlainHead {
     shape_.first_line = lines_.number() + 1;
   }
 
+  // The first line behind the names that is a row or a part of the head; false if there is none.
+  bool next_part(TextLines& after) const {
+    after = TextLines(table_.text, shape_.rows, shape_.first_line);
+    do
+      if (!after.next()) return false;
+    while (is_no_row(after.line(), shape_.separator));
+    return true;
+  }
+
+  // A line of X, Y, Z under names of points, each of which stands over its first column or over
+  // all.
+  void axis_line() {
+    TextLines after = lines_;
+    if (!next_part(after)) return;
+    const std::vector<std::string> axes = cells_of_line(after.line(), shape_.separator);
+    if (!are_axes(axes)) return;
+    names_.resize(std::max(names_.size(), axes.size()));
+    std::string point;
+    for (std::size_t c = 0; c < axes.size(); ++c) {
+      if (!names_[c].empty()) point = names_[c];
+      if (axes[c].empty()) continue;
+      const NamedQuantity quantity = named_quantity(axes[c]);
+      const bool is_of_frame = quantity == NamedQuantity::time || quantity == NamedQuantity::frame;
+      names_[c] = point.empty() || is_of_frame ? axes[c] : point + " " + axes[c];
+    }
+    lines_ = after;
+    rows_behind();
+  }
+
+  // Whether cells are x, y, z and what else stands beside these.
+  static bool are_axes(const std::vector<std::string>& cells) {
+    std::size_t count = 0;
+    for (const std::string& cell : cells) {
+      const NamedQuantity quantity = named_quantity(cell);
+      const bool is_axis =
+          cell.size() == 1 && std::string_view("xyzXYZ").find(cell[0]) != std::string_view::npos;
+      const bool is_other = quantity == NamedQuantity::time || quantity == NamedQuantity::frame ||
+                            quantity == NamedQuantity::confidence || cell.empty() ||
+                            in_lower_case(cell) == "sub frame";
+      if (!is_axis && !is_other) return false;
+      count += is_axis;
+    }
+    return count > 1;
+  }
+
+  // R writes names of rows, but none above them.
+  void row_names() {
+    TextLines after = lines_;
+    if (!next_part(after)) return;
+    const std::vector<std::string> row = cells_of_line(after.line(), shape_.separator);
+    if (row.size() == names_.size() + 1 && !row.back().empty() && row.front() == "1")
+      names_.insert(names_.begin(), "");
+  }
+
   // A line of units under the names.
   void unit_line() {
-    TextLines after(table_.text, shape_.rows, shape_.first_line);
-    do
-      if (!after.next()) return;
-    while (is_no_row(after.line(), shape_.separator));
+    TextLines after = lines_;
+    if (!next_part(after)) return;
     bool has_unit = false;
     for (const std::string& cell : cells_of_line(after.line(), shape_.separator)) {
       const std::string unit = unit_in(cell);

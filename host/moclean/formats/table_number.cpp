@@ -49,7 +49,9 @@ bool says_missing(std::string_view text) {
   std::string word(text);
   std::transform(word.begin(), word.end(), word.begin(), lower_case);
   for (const char* known :
-       {"nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "-nan", "nan(ind)", "-nan(ind)"})
+       {"nan",       "na",      "n/a",     "#n/a",    "<na>",  "n.a.",  "null",
+        "none",      "missing", "-",       "--",      ".",     "-nan",  "nan(ind)",
+        "-nan(ind)", "#num!",   "#div/0!", "#value!", "#ref!", "#name?"})
     if (word == known) return true;
   return is_microsofts_nan(word);
 }
