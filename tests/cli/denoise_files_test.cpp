@@ -230,11 +230,11 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"SkeletonOutput",
                 {"walk.csv", "clean.bvh"},
                 2,
-                "own skeleton, expected .c3d, .trc, .csv or .npy"},
+                "own skeleton, expected .c3d, .trc, .csv, .tsv, .mot, .sto or .npy"},
         Refused{"OutputWithoutExtension",
                 {"walk.csv", "clean"},
                 2,
-                "expected .bvh, .c3d, .trc, .csv or .npy"},
+                "expected .bvh, .c3d, .trc, .csv, .tsv, .mot, .sto or .npy"},
         Refused{"NoFolderForOutput", {"walk.csv", "none/clean.csv"}, 1, "there is no folder"},
         Refused{"FileAsFolder", {"walk.csv", "walk.csv/"}, 2, "is a file"}),
     [](const auto& test) { return test.param.name; });

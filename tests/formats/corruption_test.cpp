@@ -30,27 +30,52 @@ std::string tiny_npy() {
          std::string(96, '?');
 }
 
+std::string wide(std::string_view ascii) {
+  std::string bytes = "\xFF\xFE";
+  for (const char c : ascii) bytes.append({c, '\0'});
+  return bytes;
+}
+
 std::vector<Format> formats() {
+  const auto parse_table = [](std::string_view text) { return parse_csv(text, "x.csv"); };
   const auto asf = [](std::string_view text) { return parse_asf(text, "x.asf"); };
-  return {{"bvh", std::string(test::tiny_bvh),
-           [](std::string_view text) { return joint_positions(parse_bvh(text, "x.bvh")); }},
-          {"asf", std::string(test::tiny_asf),
-           [asf](std::string_view text) {
-             const AcclaimSkeleton skeleton = asf(text);
-             return joint_positions(
-                 {skeleton.skeleton, Matrix::Zero(1, skeleton.skeleton.channels()), 0, ""});
-           }},
-          {"amc", std::string(test::tiny_amc),
-           [skeleton = asf(test::tiny_asf)](std::string_view text) {
-             return joint_positions(parse_amc(text, "x.amc", skeleton));
-           }},
-          {"trc", std::string(test::tiny_trc),
-           [](std::string_view text) { return parse_trc(text, "x.trc"); }},
-          {"csv", std::string(test::tiny_csv),
-           [](std::string_view text) { return parse_csv(text, "x.csv"); }},
-          {"c3d", test::C3dMaker{.frames = std::vector(16, std::vector<double>(8, 1.0))}.bytes(),
-           [](std::string_view bytes) { return parse_c3d(bytes, "x.c3d"); }},
-          {"npy", tiny_npy(), [](std::string_view text) { return parse_npy(text, "x.npy"); }}};
+  return {
+      {"bvh", std::string(test::tiny_bvh),
+       [](std::string_view text) { return joint_positions(parse_bvh(text, "x.bvh")); }},
+      {"asf", std::string(test::tiny_asf),
+       [asf](std::string_view text) {
+         const AcclaimSkeleton skeleton = asf(text);
+         return joint_positions(
+             {skeleton.skeleton, Matrix::Zero(1, skeleton.skeleton.channels()), 0, ""});
+       }},
+      {"amc", std::string(test::tiny_amc),
+       [skeleton = asf(test::tiny_asf)](std::string_view text) {
+         return joint_positions(parse_amc(text, "x.amc", skeleton));
+       }},
+      {"trc", std::string(test::tiny_trc),
+       [](std::string_view text) { return parse_trc(text, "x.trc"); }},
+      {"csv", std::string(test::tiny_csv),
+       [](std::string_view text) { return parse_csv(text, "x.csv"); }},
+      {"utf16_csv", wide(test::tiny_csv), parse_table},
+      {"motive",
+       "Format Version,1.2,Export Frame Rate,100,Total Exported Frames,2\n\n,Type,Marker,"
+       "Marker,Marker\n,Name,A,A,A\n,,Position,Position,Position\nFrame,Time,X,Y,Z\n"
+       "0,0,1,2,3\n1,0.01,,,\n",
+       parse_table},
+      {"nexus",
+       "Trajectories\n100\n,,A,,\nFrame,Sub Frame,X,Y,Z\n,,mm,mm,mm\n1,0,1,2,3\n2,0,,,\n\n"
+       "Devices\n1000\n,,F\nFrame,Sub Frame,Fx\n,,N\n1,0,5\n",
+       parse_table},
+      {"qtm",
+       "NO_OF_FRAMES\t2\nFREQUENCY\t100\nDATA_INCLUDED\t3D\nMARKER_NAMES\tA\n1\t2\t3\n"
+       "4\t5\t6\n",
+       parse_table},
+      {"deeplabcut", "scorer,n,n,n\nbodyparts,a,a,a\ncoords,x,y,likelihood\n0,1,2,0.5\n1,3,4,0\n",
+       parse_table},
+      {"opensim", std::string(test::tiny_mot), parse_table},
+      {"c3d", test::C3dMaker{.frames = std::vector(16, std::vector<double>(8, 1.0))}.bytes(),
+       [](std::string_view bytes) { return parse_c3d(bytes, "x.c3d"); }},
+      {"npy", tiny_npy(), [](std::string_view text) { return parse_npy(text, "x.npy"); }}};
 }
 
 // A clip or an Error; anything else (another exception, a crash, a sanitizer's finding) fails.

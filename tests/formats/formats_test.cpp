@@ -55,9 +55,10 @@ TEST(Formats, AreFoundByExtensionInAnyCase) {
 }
 
 TEST(Formats, AreListedForHelpTextsAndForSentences) {
-  EXPECT_EQ(listed_extensions(can_read), ".bvh .amc .c3d .trc .csv .npy .npz");
-  EXPECT_EQ(any_extension(can_read), ".bvh, .amc, .c3d, .trc, .csv, .npy or .npz");
-  EXPECT_EQ(any_extension(can_write), ".bvh, .c3d, .trc, .csv, .npy or .npz");
+  EXPECT_EQ(listed_extensions(can_read), ".bvh .amc .c3d .trc .csv .tsv .mot .sto .npy .npz");
+  EXPECT_EQ(any_extension(can_read),
+            ".bvh, .amc, .c3d, .trc, .csv, .tsv, .mot, .sto, .npy or .npz");
+  EXPECT_EQ(any_extension(can_write), ".bvh, .c3d, .trc, .csv, .tsv, .mot, .sto, .npy or .npz");
   EXPECT_EQ(any_extension([](const Format& format) { return format.name == "BVH"; }), ".bvh");
   EXPECT_THAT(any_extension([](const Format&) { return false; }), IsEmpty());
 }
@@ -114,6 +115,9 @@ class EachReadable : public testing::Test {
     folder_.file("tiny.amc", test::tiny_amc);
     folder_.file("tiny.trc", test::tiny_trc);
     folder_.file("tiny.csv", test::tiny_csv);
+    folder_.file("tiny.tsv", test::tiny_csv);
+    folder_.file("tiny.mot", test::tiny_mot);
+    folder_.file("tiny.sto", test::tiny_mot);
     write_recording(folder_.path() / "tiny.npy", {Matrix{{1, 2, 3}}, {"a", "b", "c"}, 120, "mm"});
     write_recording(folder_.path() / "tiny.npz", {Matrix{{1, 2, 3}}, {"a", "b", "c"}, 120, "mm"});
     write_recording(folder_.path() / "tiny.c3d",

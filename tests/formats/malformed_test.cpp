@@ -52,7 +52,12 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"blank_between_words.trc",
              "blank_between_words.trc:7: expected 8 numbers, found 7; which are missing cannot be "
              "told without tabs: write nan for them"},
-        Case{"comma_for_point.csv", "comma_for_point.csv:2: expected a number, found '1,5'"},
+        Case{"comma_and_point.csv",
+             "comma_and_point.csv:3: expected a decimal point, as in other cells, found '1,5'"},
+        Case{
+            "comma_for_both.csv",
+            "comma_for_both.csv:2: expected 2 columns, found 4: if the comma is both separator and "
+            "decimal mark, separate by ; or tab"},
         Case{"comma_for_point.trc",
              "comma_for_point.trc:7: expected a number, found '4,5'; decimals stand behind a "
              "point, not a comma"},
@@ -78,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"infinite.trc", "infinite.trc:7: expected a number, found 'inf'"},
         Case{"length_freedom.asf",
              "length_freedom.asf:15: expected a degree of freedom (tx ty tz rx ry rz), found 'l'"},
-        Case{"long_row.csv", "long_row.csv:4: expected 2 columns, found more"},
+        Case{"long_row.csv", "long_row.csv:4: expected 2 columns, found 3"},
         Case{"long_row.trc", "long_row.trc:7: expected 8 cells, found more: '7'"},
         Case{"missing_bone.amc",
              "missing_bone.amc:6: expected bone 'thigh' in frame 1, found the frame's end"},
@@ -110,12 +115,14 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"non_number.amc", "non_number.amc:9: expected a number, found 'O'"},
         Case{"non_number.asf", "non_number.asf:13: expected a number, found 'two'"},
         Case{"non_number.bvh", "non_number.bvh:15: expected a number, found '2o'"},
-        Case{"non_number.csv", "non_number.csv:4: expected a number, found 'four'"},
+        Case{"non_number.csv",
+             "non_number.csv:4: expected a number, found 'four' in column 2 ('hip.y')"},
         Case{"non_number.trc", "non_number.trc:7: expected a number, found 'four'"},
         Case{"not_numpy.npy",
              "not_numpy.npy: expected an npy file, which starts with '\\x93NUMPY', found 'hip.x,'"},
         Case{"numbers_only.csv",
-             "numbers_only.csv:1: expected a line of column names, found numbers"},
+             "numbers_only.csv:1: expected a line of column names, found numbers; --columns or "
+             "--layout say what they are"},
         Case{"other_axes.trc", "other_axes.trc:1: expected coordinates (X/Y/Z), found '(X/Z/Y)'"},
         Case{"overflow.bvh", "overflow.bvh:14: expected a number, found '1e999'"},
         Case{"overflowing_shape.npy",
@@ -129,7 +136,8 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"skipped_frame.amc", "skipped_frame.amc:7: expected frame 2, found 3"},
         Case{"structured.npy", "structured.npy: holds a structured array; save its coordinates"},
         Case{"time_alone.csv", "time_alone.csv:2: expected columns beside the time"},
-        Case{"time_backwards.csv", "time_backwards.csv:4: expected a time after 0.1, found 0.05"},
+        Case{"time_backwards.csv",
+             "time_backwards.csv:4: expected a time after 0.1, found 0.05 in column 1 ('time')"},
         Case{"time_of_other_rate.trc",
              "time_of_other_rate.trc:3: expected a Time column of DataRate 100 Hz, found one of 20 "
              "Hz; --rate states which is right"},

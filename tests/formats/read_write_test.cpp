@@ -38,14 +38,14 @@ TEST(ReadRecording, NamesTheExtensionsItReads) {
                     AllOf(HasSubstr(name), HasSubstr("expected a file ending in .bvh, .amc"))));
 }
 
-TEST(ReadRecording, UsesTheRateOptionOnlyWhereTheFileStatesNone) {
+TEST(ReadRecording, TakesTheRateOptionWhereTheFileStatesNoneAndOfTablesAlways) {
   const TemporaryFolder folder;
   const ReadOptions options{.skeleton = folder.file("s.asf", test::tiny_asf), .rate = 60};
 
   EXPECT_EQ(read_recording(folder.file("a.bvh", test::tiny_bvh), options).frame_rate, 120);
   EXPECT_EQ(read_recording(folder.file("a.amc", test::tiny_amc), options).frame_rate, 60);
   EXPECT_EQ(read_recording(folder.file("a.csv", "a,b\n1,2\n"), options).frame_rate, 60);
-  EXPECT_EQ(read_recording(folder.file("b.csv", test::tiny_csv), options).frame_rate, 120);
+  EXPECT_EQ(read_recording(folder.file("b.csv", test::tiny_csv), options).frame_rate, 60);
 }
 
 TEST(ReadRecording, BlamesTheFileThatIsWrong) {

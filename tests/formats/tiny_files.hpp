@@ -108,4 +108,12 @@ inline constexpr std::string_view tiny_csv = R"(# frame_rate: 120
 nan,,NaN
 )";
 
+/// Two angles, three frames at 100 Hz.
+inline constexpr std::string_view tiny_mot =
+    "Coordinates\nversion=1\nnRows=3\nnColumns=3\ninDegrees=yes\n\nendheader\n"
+    "time\thip_flexion\tknee_angle\n"
+    "0.00\t10.5\t20\n"
+    "0.01\t11.5\tnan\n"
+    "0.02\t12.5\t24\n";
+
 }  // namespace moclean::test

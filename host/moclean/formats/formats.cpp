@@ -11,15 +11,18 @@
 #include "moclean/formats/c3d.hpp"
 #include "moclean/formats/csv.hpp"
 #include "moclean/formats/extension.hpp"
+#include "moclean/formats/mot.hpp"
 #include "moclean/formats/npy.hpp"
 #include "moclean/formats/npz.hpp"
 #include "moclean/formats/trc.hpp"
+#include "moclean/formats/tsv.hpp"
 
 namespace moclean {
 
 std::span<const Format* const> formats() {
-  static constexpr std::array<const Format*, 7> all = {
-      &bvh_format, &amc_format, &c3d_format, &trc_format, &csv_format, &npy_format, &npz_format,
+  static constexpr std::array<const Format*, 10> all = {
+      &bvh_format, &amc_format, &c3d_format, &trc_format, &csv_format,
+      &tsv_format, &mot_format, &sto_format, &npy_format, &npz_format,
   };
   return all;
 }

@@ -239,7 +239,7 @@ class TrcParser {
   std::string_view text_;
   const std::filesystem::path& file_;
   const ReadOptions& options_;
-  TrcLines lines_;
+  TextLines lines_;
   Recording recording_;
   std::optional<double> stated_markers_;
   bool has_unnamed_ = false;

@@ -36,7 +36,7 @@ class TrcRewriter {
 
   void write() {
     head();
-    TrcLines lines(document_.text, document_.rows, document_.first_line);
+    TextLines lines(document_.text, document_.rows, document_.first_line);
     Index frame = -document_.first_frame;
     while (lines.next()) {
       const bool is_row = !lines.is_blank();
@@ -58,7 +58,7 @@ class TrcRewriter {
   // As many as a sample of the first rows with samples has.
   void count_decimals() {
     std::size_t looked_at = 0;
-    for (TrcLines lines(document_.text, document_.rows); looked_at < 1000 && lines.next();) {
+    for (TextLines lines(document_.text, document_.rows); looked_at < 1000 && lines.next();) {
       Index column = -2;
       for (TrcCells cells(lines.line()); cells.next() && column < samples_.cols(); ++column) {
         const auto count = decimals_of(cells.cell());
@@ -75,7 +75,7 @@ class TrcRewriter {
     std::size_t place = head.size(), length = 0;
     std::vector<std::string_view> names;
     int line = 0;  // that are not blank
-    for (TrcLines lines(head); lines.next();) {
+    for (TextLines lines(head); lines.next();) {
       if (lines.is_blank()) continue;
       ++line;
       std::size_t index = 0;
