@@ -352,9 +352,11 @@ INSTANTIATE_TEST_SUITE_P(
         WrongOptions{"FramesBeyond", {"--frames", "5:11"}, "walk.csv has 10 frames"},
         WrongOptions{"FramesFromBeyond", {"--frames", "10:"}, "walk.csv has 10 frames"},
         WrongOptions{"Format", {"--format", "csv"}, "--format csv contradicts"},
+        WrongOptions{"OutliersFormat",
+                     {"--outliers", "e.txt"},
+                     "expected .bvh, .amc, .c3d, .trc, .csv or .npy"},
         WrongOptions{
-            "OutliersFormat", {"--outliers", "e.txt"}, "expected .bvh, .c3d, .trc, .csv or .npy"},
-        WrongOptions{"MaskFormat", {"--mask", "m.txt"}, "expected .bvh, .c3d, .trc, .csv or .npy"},
+            "MaskFormat", {"--mask", "m.txt"}, "expected .bvh, .amc, .c3d, .trc, .csv or .npy"},
         WrongOptions{"GapNegative", {"--max-gap", "-1"}, "--max-gap"},
         WrongOptions{"GapText", {"--max-gap", "long"}, "--max-gap"},
         WrongOptions{"Sigma", {"--sigma", "s.npy", "--method", "slra"}, "--sigma: method slra:"},
