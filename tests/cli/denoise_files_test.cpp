@@ -234,7 +234,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"OutputWithoutExtension",
                 {"walk.csv", "clean"},
                 2,
-                "expected .bvh, .c3d, .trc, .csv, .tsv, .mot, .sto or .npy"},
+                "expected .bvh, .amc, .c3d, .trc, .csv, .tsv, .mot, .sto, .npy or .npz"},
         Refused{"NoFolderForOutput", {"walk.csv", "none/clean.csv"}, 1, "there is no folder"},
         Refused{"FileAsFolder", {"walk.csv", "walk.csv/"}, 2, "is a file"}),
     [](const auto& test) { return test.param.name; });

@@ -1,4 +1,5 @@
 #include <any>
+#include <memory>
 #include <numbers>
 #include <regex>
 #include <string>
@@ -9,6 +10,7 @@
 
 #include "moclean/formats/amc.hpp"
 #include "moclean/formats/asf.hpp"
+#include "moclean/motion/framed_source.hpp"
 
 #include "formats/tiny_files.hpp"
 #include "support/matrix.hpp"
@@ -51,11 +53,11 @@ TEST(AsfAmc, KeepWhatIsNeededToWriteTheFileAgain) {
   const std::string header = "#!OML:ASF tiny.asf\n:FULLY-SPECIFIED\n:RADIANS\n";
   const Recording recording = read(header + "7\nthigh 1 0\nroot 1 2 3 0 0 0\n", test::tiny_asf);
 
-  const auto& document = std::any_cast<const AmcDocument&>(recording.source);
-  EXPECT_EQ(document.header, header);
+  const auto& source = std::any_cast<const FramedSource&>(recording.source);
+  const auto& document = *std::any_cast<const std::shared_ptr<const AmcDocument>&>(source.file);
+  EXPECT_EQ(document.text.substr(0, document.rows), header);
   EXPECT_EQ(document.radians_per_angle, 1);
-  EXPECT_EQ(document.first_frame, 7);
-  EXPECT_THAT(document.order, ElementsAre(1, 0));
+  EXPECT_EQ(document.first_number, 7);
   EXPECT_EQ(recording.channels.cols(), 8);
 }
 
@@ -77,7 +79,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(std::pair{"\n", "\r\n"}, std::pair{"\n", "\r"}, std::pair{" ", "\t"},
                     std::pair{"\n", "  # comment\n"}, std::pair{"^", "\xEF\xBB\xBF"},
                     std::pair{":DEGREES\n", ""}, std::pair{":FULLY-SPECIFIED\n", ""},
-                    std::pair{":DEGREES", ":degrees"}, std::pair{"length 2", "length +2.0e0"},
+                    std::pair{":DEGREES", ":degrees"}, std::pair{"angle deg", "angle Degrees"},
+                    std::pair{"length 2", "length +2.0e0"},
                     std::pair{"    id 1\n", "    id 1\n    bodymass 2.5\n"}));
 
 TEST(AsfAmc, FirstNumberOfTheFramesIsFree) {

@@ -61,8 +61,10 @@ void expect_same_positions(const std::filesystem::path& file) {
       expected.row(f).segment<3>(joint.first_column) << p.x, p.y, p.z;
     }
   }
-  EXPECT_EQ(clip.frames(), static_cast<Index>(scene->mAnimations[0]->mDuration) + 1);
-  EXPECT_LE(test::largest_difference(clip.samples, expected),
+  // It leaves out lines beyond the stated number of frames (Boxing_Toes.bvh has one).
+  const Index frames = static_cast<Index>(scene->mAnimations[0]->mDuration) + 1;
+  EXPECT_THAT(clip.frames(), testing::AnyOf(frames, frames + 1));
+  EXPECT_LE(test::largest_difference(clip.samples.topRows(frames), expected.topRows(frames)),
             test::tolerance::single_precision_reader() * expected.cwiseAbs().maxCoeff());
 }
 

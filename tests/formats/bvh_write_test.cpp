@@ -55,7 +55,7 @@ INSTANTIATE_TEST_SUITE_P(
                     std::pair{"\n", "\n\n"}, std::pair{" ", "\t"}, std::pair{"\n", " \t\n"},
                     std::pair{"^", "\xEF\xBB\xBF"}, std::pair{"Frames: ", "frames:"},
                     std::pair{"0 90", "-0.0 +9.0e1"}, std::pair{"\n$", ""}, std::pair{"$", "\n "},
-                    std::pair{"0 0 0\n$", "1e-15 0 370\n9 9 9 9 9 9 9 9 9 9\n"}));
+                    std::pair{"0 0 0\n$", "1e-15 0 370\nend of motion\n1 2\n"}));
 
 TEST(BvhWrite, TurnsPositionsIntoRotationsAndKeepsTheTextOfAllElse) {
   Recording recording = from_bvh(test::tiny_bvh);
@@ -84,11 +84,10 @@ TEST(BvhWrite, WritesTheFramesThereAre) {
             with(with(test::tiny_bvh, "Frames: 2", "Frames: 1"), "1 2 3 90 0.*\n", ""));
 }
 
-TEST(BvhWrite, WritesPartsOfARecordingWithoutTheirText) {
+TEST(BvhWrite, KeepsTheTextOfPartsOfARecording) {
   const std::string text = as_bvh(excerpt(from_bvh(test::tiny_bvh), 1, 2));
 
-  EXPECT_THAT(text, HasSubstr("Frames: 1\nFrame Time: .0083333\n1.0000 2.0000 3.0000 90.0000 "));
-  EXPECT_EQ(from_bvh(text).frames(), 1);
+  EXPECT_EQ(text, as_bvh(from_bvh(test::tiny_bvh, {.first = 1, .last = 2})));
 }
 
 TEST(BvhWrite, StatesAnotherRate) {
@@ -99,13 +98,10 @@ TEST(BvhWrite, StatesAnotherRate) {
 }
 
 TEST(BvhWrite, RefusesRecordingsWithoutRotations) {
-  Recording recording = from_bvh(test::tiny_bvh);
-  recording.source.reset();
   const Recording csv{Matrix{{1, 2, 3}}, {"a.x", "a.y", "a.z"}, 60, "mm"};
 
-  for (const Recording& without : {recording, csv})
-    EXPECT_THAT([&] { as_bvh(without); },
-                ThrowsMessage<FileError>(HasSubstr("BVH holds rotations of a skeleton")));
+  EXPECT_THAT([&] { as_bvh(csv); },
+              ThrowsMessage<FileError>(HasSubstr("BVH holds rotations of a skeleton")));
 }
 
 class BvhOfTake : public testing::TestWithParam<const char*> {
@@ -129,7 +125,9 @@ class BvhOfTake : public testing::TestWithParam<const char*> {
 TEST_P(BvhOfTake, ComesBackByteForByte) {
   MOCLEAN_REQUIRE_FILE(file());
 
-  EXPECT_TRUE(as_bvh(read_recording(file())) == read_file(file()));
+  // Boxing_Toes.bvh states one frame too few; that is mended.
+  const std::string text = with(read_file(file()), "(Frames: +)3069\n", "$013070\n");
+  EXPECT_TRUE(as_bvh(read_recording(file())) == text);
 }
 
 TEST_P(BvhOfTake, FindsExactPositionsFromOtherRotations) {

@@ -58,7 +58,8 @@ TEST(Formats, AreListedForHelpTextsAndForSentences) {
   EXPECT_EQ(listed_extensions(can_read), ".bvh .amc .c3d .trc .csv .tsv .mot .sto .npy .npz");
   EXPECT_EQ(any_extension(can_read),
             ".bvh, .amc, .c3d, .trc, .csv, .tsv, .mot, .sto, .npy or .npz");
-  EXPECT_EQ(any_extension(can_write), ".bvh, .c3d, .trc, .csv, .tsv, .mot, .sto, .npy or .npz");
+  EXPECT_EQ(any_extension(can_write),
+            ".bvh, .amc, .c3d, .trc, .csv, .tsv, .mot, .sto, .npy or .npz");
   EXPECT_EQ(any_extension([](const Format& format) { return format.name == "BVH"; }), ".bvh");
   EXPECT_THAT(any_extension([](const Format&) { return false; }), IsEmpty());
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <optional>
 #include <string>
 #include <unordered_map>
@@ -79,13 +80,18 @@ class AsfParser {
   void units() {
     while (!at_section()) {
       if (scanner_.accept("angle")) {
-        if (scanner_.accept("rad"))
+        if (accept_any({"rad", "radian", "radians"}))
           radians_per_angle_ = 1;
-        else if (!scanner_.accept("deg"))
+        else if (!accept_any({"deg", "degree", "degrees"}))
           scanner_.fail_expected("deg or rad");
       }
       scanner_.next_line();
     }
+  }
+
+  bool accept_any(std::initializer_list<std::string_view> keywords) {
+    return std::ranges::any_of(keywords,
+                               [this](std::string_view word) { return scanner_.accept(word); });
   }
 
   void root() {

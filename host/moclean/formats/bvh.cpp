@@ -1,15 +1,18 @@
 #include "moclean/formats/bvh.hpp"
 
 #include <algorithm>
-#include <any>
 #include <array>
-#include <numbers>
+#include <memory>
+#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "moclean/formats/frame_rate.hpp"
+#include "moclean/formats/bvh_motion.hpp"
+#include "moclean/formats/skeleton_positions.hpp"
 #include "moclean/formats/text_scanner.hpp"
+#include "moclean/motion/framed_source.hpp"
 
 namespace moclean {
 namespace {
@@ -23,30 +26,74 @@ constexpr std::array<std::pair<std::string_view, Channel>, 6> channel_names = {{
     {"Zrotation", Channel::rotate_z},
 }};
 
+bool is_number_with_comma(std::string_view word) {
+  const std::size_t comma = word.find(',');
+  return comma != word.npos && comma + 1 < word.size() && word[comma + 1] >= '0' &&
+         word[comma + 1] <= '9' && word.find_first_not_of("0123456789+-eE,") == word.npos &&
+         word.find(',', comma + 1) == word.npos;
+}
+
+// The text with a point in every number that has a comma: words between blanks are so told apart
+// without doubt.
+std::string with_points(std::string_view text) {
+  constexpr std::string_view blanks = " \t\r\n";
+  std::string result(text);
+  for (std::size_t comma = text.find(','); comma != text.npos; comma = text.find(',', comma + 1)) {
+    const std::size_t first = text.find_last_of(blanks, comma) + 1;
+    const std::size_t last = std::min(text.find_first_of(blanks, comma), text.size());
+    if (is_number_with_comma(text.substr(first, last - first)))
+      result[comma] = '.';
+    else
+      comma = last - 1;  // each word is looked at once
+  }
+  return result;
+}
+
 class BvhParser {
  public:
   BvhParser(std::string_view text, const std::filesystem::path& file)
       : text_(text), scanner_(text, file, {.marks = "{}"}) {}
 
-  SkeletonMotion parse() {
+  // `written` is the text as it stands in the file.
+  SkeletonMotion parse(double rate, std::string_view written) {
+    while (scanner_.peek() == '#' || scanner_.peek() == '/') scanner_.next_line();
     scanner_.expect("HIERARCHY");
     while (!at_motion()) item();
     if (open_ >= 0)
       scanner_.fail(fmt::format("expected '}}' of joint {} before MOTION", excerpt(bone().name)));
     if (result_.skeleton.channels() == 0) scanner_.fail("no joint has a channel");
-    frames();
-    result_.source = std::move(document_);
+    tell_names_apart();
+    read_bvh_motion(text_, scanner_, rate, document_, result_);
+    document_.text = written;
+    const std::uint64_t bytes = document_.text.size();
+    result_.source = FramedSource{.file = std::make_shared<const BvhDocument>(std::move(document_)),
+                                  .first = 0,
+                                  .bytes = bytes};
     return std::move(result_);
   }
 
  private:
-  // Keeps all text before MOTION.
   bool at_motion() {
     scanner_.peek();
-    const std::size_t before = text_.size() - scanner_.bytes_left();
-    if (!scanner_.accept("MOTION")) return false;
-    document_.hierarchy = text_.substr(0, before);
-    return true;
+    document_.motion = text_.size() - scanner_.bytes_left();
+    return scanner_.accept("MOTION");
+  }
+
+  // Columns are found by their names.
+  void tell_names_apart() {
+    std::unordered_set<std::string> taken;
+    for (const Bone& bone : result_.skeleton.bones) taken.insert(bone.name);
+    if (taken.size() == result_.skeleton.bones.size()) return;
+    std::unordered_map<std::string, Index> count;
+    for (Bone& bone : result_.skeleton.bones) {
+      Index& own = count[bone.name];
+      if (++own == 1) continue;
+      std::string name;
+      do name = fmt::format("{}_{}", bone.name, own++);
+      while (!taken.insert(name).second);
+      --own;
+      bone.name = name;
+    }
   }
 
   // The hierarchy may be nested as deep as it likes: `open_` and the parents are the only stack.
@@ -115,54 +162,6 @@ class BvhParser {
     scanner_.fail_expected("a channel (Xposition ... Zrotation)");
   }
 
-  void frames() {
-    scanner_.expect("Frames:");
-    const Index frames = scanner_.count();
-    document_.stated_frames = frames;
-    if (frames == 0) scanner_.fail("expected at least one frame, found 'Frames: 0'");
-    scanner_.expect("Frame");
-    scanner_.expect("Time:");
-    const double seconds = scanner_.number();
-    if (seconds <= 0) scanner_.fail("expected a positive frame time");
-    scanner_.expect_line_end();
-    document_.frame_time = seconds;
-    scanner_.at_end();  // to the first frame
-    document_.motion = text_.substr(document_.hierarchy.size());
-    document_.rows = document_.motion.size() - scanner_.bytes_left();
-    result_.frame_rate = rate_from_period(seconds);
-
-    // Memory for no more frames than the rest of the file can hold, two bytes a number at least,
-    // and for one that begins but does not end.
-    const auto width = static_cast<std::size_t>(result_.skeleton.channels());
-    const auto room = static_cast<Index>(scanner_.bytes_left() / (2 * width) + 1);
-    result_.channels.resize(std::min(frames, room), static_cast<Index>(width));
-    const std::vector<double> scales = this->scales();
-    for (Index f = 0; f < frames; ++f) {
-      if (scanner_.at_end()) scanner_.fail(fmt::format("expected {} frames, found {}", frames, f));
-      frame(result_.channels.row(f).data(), scales);
-    }
-    document_.all_frames = document_.frames = frames;
-  }
-
-  void frame(double* values, const std::vector<double>& scales) {
-    for (std::size_t c = 0; c < scales.size(); ++c) {
-      if (scanner_.at_line_end())
-        scanner_.fail(fmt::format("expected {} numbers per frame, found {}", scales.size(), c));
-      values[c] = scanner_.number() * scales[c];
-    }
-    if (!scanner_.at_line_end())
-      scanner_.fail(fmt::format("expected {} numbers per frame, found more", scales.size()));
-  }
-
-  // What a number of a frame is multiplied with: degrees become radians.
-  std::vector<double> scales() const {
-    std::vector<double> scales;
-    for (const Bone& bone : result_.skeleton.bones)
-      for (const Channel channel : bone.channels)
-        scales.push_back(is_translation(channel) ? 1 : std::numbers::pi / 180);
-    return scales;
-  }
-
   Bone& bone() { return result_.skeleton.bones[static_cast<std::size_t>(open_)]; }
 
   std::string_view text_;
@@ -175,17 +174,14 @@ class BvhParser {
 
 Recording read_bvh(std::string_view content, const std::filesystem::path& file,
                    const ReadOptions& options) {
-  SkeletonMotion motion = parse_bvh(content, file);
-  auto& document = std::any_cast<BvhDocument&>(motion.source);
-  document.first_frame = options.frames.first.value_or(0);
-  document.frames = options.frames.last.value_or(document.all_frames) - document.first_frame;
-  return joint_positions(std::move(motion));
+  return skeleton_positions(parse_bvh(content, file, options.rate), file, content.size());
 }
 
 }  // namespace
 
-SkeletonMotion parse_bvh(std::string_view text, const std::filesystem::path& file) {
-  return BvhParser(text, file).parse();
+SkeletonMotion parse_bvh(std::string_view text, const std::filesystem::path& file, double rate) {
+  if (text.find(',') == text.npos) return BvhParser(text, file).parse(rate, text);
+  return BvhParser(with_points(text), file).parse(rate, text);
 }
 
 constinit const Format bvh_format = {
@@ -193,7 +189,7 @@ constinit const Format bvh_format = {
     .extension = ".bvh",
     .notes =
         "any hierarchy, channels and rotation order; becomes joint positions, and rotations again "
-        "when a recording of a BVH file is written",
+        "on the skeleton of a BVH or ASF/AMC file",
     .content = {.names = true, .frame_rate = true, .skeleton = true},
     .read = read_bvh,
     .write = write_bvh,

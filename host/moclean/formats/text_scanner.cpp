@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -17,6 +18,22 @@ char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + '
 // std::from_chars knows no plus sign; "+-1" stays an error.
 const char* skip_plus(const char* first, const char* last) {
   return first + 1 < last && first[0] == '+' && first[1] != '-' ? first + 1 : first;
+}
+
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+// `1.#IND`, `-1.#QNAN00` and their like.
+bool is_microsoft_nan(std::string_view word) {
+  if (word.starts_with('-') || word.starts_with('+')) word.remove_prefix(1);
+  return word.starts_with("1.#IND") || word.starts_with("1.#QNAN") || word.starts_with("1.#SNAN");
+}
+
+// Whether a sign stands in a word where only the next number can begin.
+bool is_glued(std::string_view word) {
+  for (std::size_t i = 1; i < word.size(); ++i)
+    if ((word[i] == '-' || word[i] == '+') && (is_digit(word[i - 1]) || word[i - 1] == '.'))
+      return true;
+  return false;
 }
 
 }  // namespace
@@ -124,6 +141,19 @@ double TextScanner::finite_number() {
   fail_expected("a finite number");
 }
 
+// A word that plain_number() does not know.
+bool TextScanner::accept_unusual_number(double& value) {
+  const char* last = position_;
+  while (!is_word_end(last)) ++last;
+  const auto [after, error] = std::from_chars(skip_plus(position_, last), last, value);
+  if (is_microsoft_nan({position_, last}))
+    value = std::numeric_limits<double>::quiet_NaN();
+  else if (error != std::errc() || after != last || last == position_ || std::isinf(value))
+    return false;
+  position_ = last;
+  return true;
+}
+
 Index TextScanner::count() {
   if (at_end()) fail_expected("a whole number");
   Index value = 0;
@@ -143,6 +173,17 @@ void TextScanner::fail_expected(std::string_view expected) {
   const std::string_view found = word();
   fail(fmt::format("expected {}, found {}", expected,
                    found.empty() ? "the end of the file" : excerpt(found)));
+}
+
+void TextScanner::fail_number() {
+  const std::string_view found = word();
+  if (found.empty()) fail_expected("a number");
+  std::string problem = fmt::format("expected a number, found {}", excerpt(found));
+  if (found.find(',') != found.npos)
+    problem += "; numbers stand between blanks, decimals behind a point";
+  else if (is_glued(found))
+    problem += "; two numbers without a blank between them";
+  fail(problem);
 }
 
 }  // namespace moclean

@@ -72,6 +72,16 @@ class TextScanner {
   /// The next word as a number, NaN and infinity included.
   double number_or_nan();
 
+  /// Consumes the next word of the line if it is a finite number, or says that there is none:
+  /// `nan`, and what Microsoft's runtimes print for it (`-1.#IND00`, `1.#QNAN`), which is NaN.
+  bool accept_number(double& value) {
+    if (at_line_end()) return false;
+    const char* const after = plain_number(position_, end_, value);
+    if (!after || !is_word_end(after)) return accept_unusual_number(value);
+    position_ = after;
+    return true;
+  }
+
   /// The next word as a whole number >= 0.
   Index count();
 
@@ -83,6 +93,10 @@ class TextScanner {
 
   /// Throws FileError `expected ..., found '...'` with the next word.
   [[noreturn]] void fail_expected(std::string_view expected);
+
+  /// As fail_expected("a number"), with the likely reason where there is one: a decimal comma, two
+  /// numbers without a blank between them.
+  [[noreturn]] void fail_number();
 
   std::size_t line() const { return line_; }  ///< counts from 1
   std::size_t bytes_left() const { return static_cast<std::size_t>(end_ - position_); }
@@ -104,6 +118,7 @@ class TextScanner {
   bool at_end_of_line();
   bool at_end_of_text();
   double finite_number();
+  bool accept_unusual_number(double& value);
 
   std::filesystem::path file_;
   const char* position_;

@@ -25,6 +25,9 @@ namespace moclean {
 /// that is true of all joints is kept whole. Frames are independent, but for this: where the input
 /// was thrown by whole turns and the result need not be, angles follow the frame before.
 ///
+/// A channel that is NaN was not observed: the search begins between its neighbours in time. It
+/// becomes a number where a joint that it moves has a position, and is NaN still where none has.
+///
 /// Throws ShapeError if sizes do not fit.
 Matrix inverse_kinematics(const Skeleton& skeleton, const Matrix& channels, const Matrix& positions,
                           int jobs = 1);

@@ -22,7 +22,7 @@ constexpr double small_damping = 1e-4;  // under which a small step means a smal
 constexpr double most_damping = 1e3;
 constexpr double smallest_turn = 1e-7;  // of a step worth another: the next is its square
 constexpr double level = 1e-8;          // share by which steps lessen what noise leaves
-constexpr int most_steps = 30;
+constexpr int most_steps = 80;
 
 // The rotation that brings arms nearest to their aims, given sum(aim arm') (Kabsch 1976).
 Matrix3d best_rotation(const Matrix3d& products) {
@@ -90,18 +90,21 @@ void PoseSolver::solve(const double* positions, const double* current, double* c
   choose_freedoms();
   aim();
   double damping = least_damping, best = distance();
+  bool is_smooth = true;  // the last step lessened the distance: steps may be bolder at once
   for (int step = 0; step < most_steps && damping <= most_damping; ++step) {
     keep(kept_);
     const double turned = take_step(damping);
     const double now = distance();
     if (now > best * (1 + 1e-9)) {
       restore(kept_);
-      damping *= 10;
+      damping *= 5;
+      is_smooth = false;
       continue;
     }
     const bool is_level = best - now <= level * now;
     best = now;
-    damping = std::max(least_damping, damping / 10);
+    damping = std::max(least_damping, damping / (is_smooth ? 10 : 2));
+    is_smooth = true;
     if ((is_level || turned < smallest_turn) && damping < small_damping) break;
   }
   write(channels);

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/formats/bvh.hpp"
 #include "moclean/formats/extension.hpp"
 #include "moclean/formats/formats.hpp"
 #include "moclean/formats/npy.hpp"
@@ -49,12 +50,15 @@ bool wants_folder(const OutputRequest& request) {
          names_folder(request.output);
 }
 
-// Rotations can be written only over the file that they came from.
+// BVH can say the rotations of any skeleton, other formats those of their own files alone.
 void require_rotations(const fs::path& input, const fs::path& output) {
   if (!is_of_format(output, has_skeleton) || format_of(input) == format_of(output)) return;
+  const bool has_rotations = is_of_format(input, has_skeleton);
+  if (has_rotations && format_of(output) == &bvh_format) return;
   throw ArgumentError(fmt::format(
-      "{}: cannot hold the positions of {} without rotations of its own skeleton, expected {}",
-      output.string(), input.string(), any_extension(holds_any_samples)));
+      "{}: cannot hold the positions of {} without rotations of its own skeleton, expected {}{}",
+      output.string(), input.string(), has_rotations ? ".bvh, " : "",
+      any_extension(holds_any_samples)));
 }
 
 std::string extension_of_result(const fs::path& input, const std::string& format) {
