@@ -84,10 +84,10 @@ class Run {
       : job_(job),
         backend_(backend),
         stop_(stop),
-        log_(job.on_failure, job.files.size(), sink),
+        log_(job.on_failure, job.files.size(), with_reports(sink)),
         rules_(rules_of(job, backend.traits())),
         budget_(host_limit(job)),
-        writer_(job.outputs, job.jobs, log_),
+        writer_(job, log_),
         reader_(job, rules_, budget_, log_, stop),
         solver_(SolveTask::solving, job, backend, log_, stop) {
     report_.takes.resize(job.files.size());
@@ -115,6 +115,24 @@ class Run {
   }
 
  private:
+  // By the time a take is written or has failed no other thread works on its report.
+  EventSink with_reports(const EventSink& sink) {
+    if (!sink) return {};
+    return [this, sink](const RunEvent& event) {
+      if (const auto* written = std::get_if<TakeWritten>(&event)) {
+        TakeReport& report = report_.takes[written->take];
+        report.write_seconds = writer_.seconds(written->take);
+        sink(TakeWritten{written->take, &report});
+      } else if (const auto* failed = std::get_if<TakeFailed>(&event)) {
+        TakeReport& report = report_.takes[failed->take];
+        report.failure = failed->problem;
+        sink(TakeFailed{failed->take, failed->problem, &report});
+      } else {
+        sink(event);
+      }
+    };
+  }
+
   void overlapped() {
     for (TakeBatch batch = reader_.next(); batch.size() > 0; batch = reader_.next()) {
       solve(batch);
