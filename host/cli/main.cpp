@@ -1,7 +1,10 @@
 // The program `moclean`. Reads the command line, runs one command, and turns every exception into a
 // message and an exit code.
 
+#include <algorithm>
 #include <cstdio>
+#include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -10,6 +13,7 @@
 #include "moclean/core/version.hpp"
 
 #include "cli/commands/commands.hpp"
+#include "cli/nearest.hpp"
 #include "cli/printing/say.hpp"
 
 namespace moclean::cli {
@@ -25,6 +29,39 @@ std::string help_command(const CLI::App& program) {
   const auto chosen = program.get_subcommands();
   return chosen.empty() ? "moclean --help"
                         : fmt::format("moclean {} --help", chosen[0]->get_name());
+}
+
+std::vector<std::string> command_names(const CLI::App& program) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : program.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  return names;
+}
+
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+// What CLI11 says is wrong, with a guess where a command or an option is one that does not exist.
+std::string problem(const CLI::App& program, const std::vector<std::string>& arguments,
+                    const CLI::ParseError& error) {
+  const CLI::App* command = &program;
+  for (const std::string& argument : arguments) {
+    const std::string name = argument.substr(0, argument.find('='));
+    const std::vector<std::string> commands = command_names(*command);
+    if (std::ranges::find(commands, name) != commands.end()) {
+      command = command->get_subcommand(name);
+    } else if (name.starts_with("--")) {
+      if (command->get_option_no_throw(name)) continue;
+      return fmt::format("unknown option {}{}", name, did_you_mean(name, option_names(*command)));
+    } else if (!commands.empty() && !name.starts_with('-')) {
+      return fmt::format("unknown command {}{}", name, did_you_mean(name, commands));
+    }
+  }
+  return error.what();
 }
 
 ExitCode run_program(int count, char** arguments) {
@@ -53,7 +90,10 @@ ExitCode run_program(int count, char** arguments) {
       program.exit(error);
       return ExitCode::done;
     }
-    return fail(ExitCode::usage, fmt::format("{} (see {})", error.what(), help_command(program)));
+    return fail(
+        ExitCode::usage,
+        fmt::format("{} (see {})", problem(program, {arguments + 1, arguments + count}, error),
+                    help_command(program)));
   } catch (const ArgumentError& error) {
     return fail(ExitCode::usage, error.what());
   } catch (const Cancelled&) {

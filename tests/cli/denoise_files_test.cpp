@@ -108,7 +108,8 @@ TEST(DenoiseFiles, FormatNamesTheFilesInAFolder) {
   const Outcome outcome = run({"denoise", walk, "-o", folder / "clean/", "--format", "csv"});
 
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(folder.names(), ElementsAre("clean", "clean/walk.csv", "walk.npy"));
+  EXPECT_THAT(folder.names(),
+              ElementsAre("clean", "clean/moclean.manifest.jsonl", "clean/walk.csv", "walk.npy"));
 }
 
 TEST(DenoiseFiles, RateAndNamesReachTheResult) {
@@ -122,23 +123,23 @@ TEST(DenoiseFiles, RateAndNamesReachTheResult) {
   EXPECT_EQ(clean.frame_rate, 120);
 }
 
-TEST(DenoiseFiles, MayReplaceItsInput) {
+TEST(DenoiseFiles, MayReplaceItsInputByForce) {
   const TemporaryFolder folder;
   const std::string walk = folder.write("walk.npy", narrow_walk(20));
   ASSERT_EQ(run({"denoise", walk, "-o", folder / "clean.npy"}).exit_code, 0);
 
-  ASSERT_EQ(run({"denoise", walk, "-o", walk}).exit_code, 0);
+  ASSERT_EQ(run({"denoise", walk, "-o", walk, "--force"}).exit_code, 0);
 
   EXPECT_TRUE(content(walk) == content(folder / "clean.npy"));
   EXPECT_THAT(folder.names(), ElementsAre("clean.npy", "walk.npy"));
 }
 
-TEST(DenoiseFiles, SameStemTwiceIsAUsageError) {
+TEST(DenoiseFiles, SameResultTwiceIsAUsageError) {
   const TemporaryFolder folder;
   const std::string csv = folder.write("walk.csv", narrow_walk(20));
   const std::string npy = folder.write("walk.npy", narrow_walk(20));
 
-  const Outcome outcome = run({"denoise", csv, npy, "-o", folder / "clean"});
+  const Outcome outcome = run({"denoise", csv, npy, "-o", folder / "clean", "--format", "csv"});
 
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, AllOf(HasSubstr(csv), HasSubstr(npy)));
@@ -169,12 +170,12 @@ TEST(DenoiseFiles, SeveralInputsNeedAFolder) {
   EXPECT_EQ(content(file), "earlier");
 }
 
-TEST(DenoiseFiles, OneMalformedInputStopsAllBeforeAnythingIsWritten) {
+TEST(DenoiseFiles, OneMalformedInputStopsAllOrNothingBeforeAnythingIsWritten) {
   const TemporaryFolder folder;
   const std::string good = folder.write("good.csv", narrow_walk(20));
   const std::string bad = folder.write_text("bad.csv", "a,b\n1,2\n3,x\n");
 
-  const Outcome outcome = run({"denoise", good, bad, "-o", folder / "clean"});
+  const Outcome outcome = run({"denoise", good, bad, "-o", folder / "clean", "--all-or-nothing"});
 
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, StartsWith("moclean: " + bad + ":3: "));
@@ -188,8 +189,8 @@ TEST(DenoiseFiles, MissingSampleIsNamedByFileFrameAndColumn) {
   gap.samples(7, 4) = std::nan("");
   const std::string bad = folder.write("b.csv", gap);
 
-  const Outcome outcome = run(
-      {"denoise", good, bad, "-o", folder / "clean", "--frames", "5:", "--method", "tsvd:rank=2"});
+  const Outcome outcome = run({"denoise", good, bad, "-o", folder / "clean", "--frames",
+                               "5:", "--method", "tsvd:rank=2", "--all-or-nothing"});
 
   EXPECT_EQ(outcome.exit_code, 1);
   EXPECT_THAT(outcome.err, HasSubstr(bad + ": frame 7, column joint1.y is nan"));

@@ -83,24 +83,50 @@ TEST(Interrupt, LeavesAnEarlierResultAsItWas) {
   EXPECT_EQ(content(earlier), "earlier");
 }
 
-TEST(Interrupt, RemovesTheResultsThatWaitForTheOthers) {
-  const TemporaryFolder folder;
-  for (const char* name : {"takes/a.npy", "takes/b.npy", "takes/c.npy"})
-    folder.write(name, synthetic_walk(1000));
-  Program program({"denoise", folder / "takes", "-o", folder / "clean", "--method", "slra",
-                   "--backend", "reference", "--jobs", "1", "--memory-limit", "11M"},
-                  {.device = "", .terminal = true});
-  const auto some_wait = [&] {
-    return std::ranges::any_of(folder.names(),
-                               [](const std::string& name) { return name.ends_with(".tmp"); });
-  };
+// The takes of a batch each; one more is solved when one is written.
+class InterruptedBatch : public ::testing::Test {
+ protected:
+  std::vector<std::string> arguments(const std::string& option) {
+    for (const char* name : {"takes/a.npy", "takes/b.npy", "takes/c.npy"})
+      folder_.write(name, synthetic_walk(1000));
+    return {
+        "denoise",   folder_ / "takes", "-o", folder_ / "clean", "--method", "slra", "--backend",
+        "reference", "--jobs",          "1",  "--memory-limit",  "11M",      option};
+  }
+
+  bool has(const std::string& ending) const {
+    return std::ranges::any_of(folder_.names(), [&](const std::string& name) {
+      return name.starts_with("clean/") && name.ends_with(ending);
+    });
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(InterruptedBatch, KeepsWhatIsWrittenAndSaysHowToGoOn) {
+  Program program(arguments("--resume"), {.device = "", .terminal = true});
   ASSERT_TRUE(program.shows("5 of about 15 segments"));
-  while (!some_wait()) usleep(1000);
+  while (!has("a.npy")) usleep(1000);
+
+  program.send(SIGINT);
+  const Outcome outcome = program.wait();
+
+  EXPECT_EQ(outcome.exit_code, 130);
+  EXPECT_THAT(outcome.err, HasSubstr(" of 3 takes were written and stay, --resume goes on"));
+  EXPECT_TRUE(has("a.npy"));
+  EXPECT_FALSE(has(".tmp"));
+  EXPECT_FALSE(has("c.npy"));
+}
+
+TEST_F(InterruptedBatch, RemovesTheResultsThatWaitForTheOthers) {
+  Program program(arguments("--all-or-nothing"), {.device = "", .terminal = true});
+  ASSERT_TRUE(program.shows("5 of about 15 segments"));
+  while (!has(".tmp")) usleep(1000);
 
   program.send(SIGINT);
 
   EXPECT_EQ(program.wait().exit_code, 130);
-  EXPECT_THAT(folder.names(), ElementsAre("takes", "takes/a.npy", "takes/b.npy", "takes/c.npy"));
+  EXPECT_THAT(folder_.names(), ElementsAre("takes", "takes/a.npy", "takes/b.npy", "takes/c.npy"));
 }
 
 TEST(Interrupt, KilledRunLeavesNoHalfFile) {
@@ -128,7 +154,7 @@ TEST(Interrupt, IsIgnoredWhereItWasIgnoredBefore) {
 
 TEST(Progress, IsShownOnATerminalAndClearedAtTheEnd) {
   const TemporaryFolder folder;
-  Program program(long_run(folder, 800, "200"), {.device = "", .terminal = true});
+  Program program(long_run(folder, 1600, "200"), {.device = "", .terminal = true});
 
   EXPECT_TRUE(program.shows("s left"));
 

@@ -83,6 +83,8 @@ Program::Program(const std::vector<std::string>& arguments, const Start& start)
   }
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
+  if (!start.input.empty())
+    posix_spawn_file_actions_addopen(&files, STDIN_FILENO, start.input.c_str(), O_RDONLY, 0);
   posix_spawn_file_actions_adddup2(&files, out_, STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&files, start.terminal ? terminal_ : err_, STDERR_FILENO);
   posix_spawnattr_t attributes;

@@ -23,6 +23,7 @@ struct Outcome {
 struct Start {
   std::string device = {};        ///< MOCLEAN_DEVICE; unset where empty
   std::string cache = {};         ///< XDG_CACHE_HOME; a folder without tunings where empty
+  std::string input = {};         ///< file that is standard input; that of the tests where empty
   bool terminal = false;          ///< standard error is a terminal
   bool ignore_interrupt = false;  ///< SIGINT is ignored, as under nohup
 };

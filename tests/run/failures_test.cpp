@@ -114,7 +114,7 @@ TEST_F(EachOnItsOwn, AResultThatCannotBeWrittenLeavesTheOthers) {
 TEST_F(EachOnItsOwn, ATruthOfAnotherShapeFailsItsTake) {
   write_takes(3);
   for (int i = 0; i < 3; ++i)
-    job_.truths.push_back(folder_.write(fmt::format("takes/truth/{}.npy", i),
+    job_.truths.push_back(folder_.write(fmt::format("truth/{}.npy", i),
                                         test::synthetic_walk(i == 1 ? frames + 1 : frames)));
 
   const RunReport report = run(backend_);

@@ -52,6 +52,7 @@ may_catch=(
   'moclean/core/parallel.hpp: carries an exception from a thread to the caller'
   'moclean/run/run_log.hpp: keeps the failure of a take, which need not end the run'
   'moclean/run/engine.cpp: names the file of a take that a method refuses, and solves alone what fails together'
+  'moclean/run/inputs.cpp: an .amc without a skeleton is for its reader to report'
   'moclean/run/take_reader.cpp: carries what reading a take threw to who asks for the take'
   'moclean/run/result_writer.cpp: carries the first exception of its threads to the caller'
   'moclean/solve/opencl/concurrent.cpp: carries the first exception of its threads to the caller'

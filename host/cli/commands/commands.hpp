@@ -11,10 +11,10 @@ namespace moclean::cli {
 /// What the program returns; scripts depend on the numbers.
 enum class ExitCode {
   done = 0,
-  failed = 1,         ///< an input or the device failed, or --verify found a difference
+  failed = 1,         ///< a take or the device failed, or --verify found a difference
   usage = 2,          ///< the command line is wrong; nothing was written
   not_converged = 3,  ///< everything is written, but a segment reached --max-iterations
-  interrupted = 130   ///< SIGINT (Ctrl-C) or SIGTERM; nothing was written
+  interrupted = 130   ///< SIGINT (Ctrl-C) or SIGTERM
 };
 
 /// What the chosen command does once the command line is parsed.

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cstdio>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -10,25 +9,38 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "moclean/core/error.hpp"
 #include "moclean/denoise/chain.hpp"
 #include "moclean/report/report.hpp"
-#include "moclean/run/engine.hpp"
-#include "moclean/run/outputs.hpp"
 #include "moclean/run/process_memory.hpp"
-#include "moclean/run/truth.hpp"
+#include "moclean/run/result_writer.hpp"
 
+#include "cli/backend/driver_check.hpp"
+#include "cli/backend/first_use.hpp"
 #include "cli/backend/open_backend.hpp"
+#include "cli/batch/batch_plan.hpp"
+#include "cli/batch/batch_run.hpp"
+#include "cli/batch/standard_streams.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/interrupt.hpp"
-#include "cli/options/denoise_options.hpp"
+#include "cli/options/layers.hpp"
 #include "cli/printing/backend_report.hpp"
 #include "cli/printing/json_record.hpp"
 #include "cli/printing/progress_line.hpp"
+#include "cli/printing/say.hpp"
+#include "cli/printing/take_lines.hpp"
+#include "cli/printing/take_text.hpp"
 
 namespace moclean::cli {
 namespace {
 
 namespace fs = std::filesystem;
+
+// An interrupt after which something is written.
+class Stopped : public Error {
+ public:
+  using Error::Error;
+};
 
 ProfileReport profile_of(const Device& device, const DenoiseOptions& options,
                          double solve_seconds) {
@@ -41,54 +53,19 @@ ProfileReport profile_of(const Device& device, const DenoiseOptions& options,
           .precision = options.precision};
 }
 
-// `7`, or `5-9` if the segments differ.
-template <class Value>
-std::string range(const std::vector<DenoisedSegment>& segments, const Value& value) {
-  const auto [least, most] = std::ranges::minmax(segments, {}, value);
-  return value(least) == value(most) ? fmt::format("{}", value(least))
-                                     : fmt::format("{}-{}", value(least), value(most));
-}
-
-// What the segments say; nothing for filters.
-std::string segments_text(const std::vector<DenoisedSegment>& segments) {
-  if (segments.empty()) return "";
-  const auto iterations = [](const DenoisedSegment& s) { return s.outcome.iterations; };
-  const auto rank = [](const DenoisedSegment& s) { return s.outcome.rank.value_or(0); };
-  const bool has_rank = std::ranges::all_of(
-      segments, [](const DenoisedSegment& s) { return s.outcome.rank.has_value(); });
-  return fmt::format(" segments {}, iterations {},{}", segments.size(), range(segments, iterations),
-                     has_rank ? fmt::format(" rank {},", range(segments, rank)) : "");
-}
-
-void print_summary(const TakeReport& take, const fs::path& result) {
-  fmt::print("{} -> {}: {} frames x {} columns,{} {:.3f} s, {:.0f} frames/s\n", take.file.string(),
-             result.string(), take.frames, take.columns, segments_text(take.segments),
-             take.solve_seconds, take.frames_per_second());
-  if (take.truth)
-    fmt::print("{}: FD from the truth {:.4g} -> {:.4g}\n", take.file.string(), take.truth->fd_noisy,
-               take.truth->fd_clean);
-  if (take.verification) fmt::print("{}\n", agreement_line(take));
-}
-
-void print_report(const RunReport& run, const OutputPlan& plan, const BackendReport& backend) {
-  for (std::size_t i = 0; i < run.takes.size(); ++i) print_summary(run.takes[i], plan.clean[i]);
-  if (backend.profile) fmt::print("\n{}", profile_table(*backend.profile));
-}
-
 void tell_notes(const std::vector<TakeReport>& takes) {
   for (const TakeReport& take : takes)
-    for (const std::string& line : note_lines(take.file, take.notes))
-      fmt::print(stderr, "moclean: {}\n", line);
+    for (const std::string& line : note_lines(take.file, take.notes)) warn("{}", line);
 }
 
 void warn_of_unobserved(const std::vector<TakeReport>& takes) {
   for (const TakeReport& take : takes)
-    if (!take.unobserved.empty()) fmt::print(stderr, "moclean: {}\n", unobserved_line(take));
+    if (!take.unobserved.empty()) warn("{}", unobserved_line(take));
 }
 
 void tell_of_changes(const std::vector<TakeReport>& takes) {
   for (const TakeReport& take : takes)
-    if (is_changed_much(take)) fmt::print(stderr, "moclean: {}\n", changed_line(take));
+    if (is_changed_much(take)) warn("{}", changed_line(take));
 }
 
 ExitCode warn_if_not_converged(const std::vector<TakeReport>& takes) {
@@ -97,10 +74,10 @@ ExitCode warn_if_not_converged(const std::vector<TakeReport>& takes) {
     const auto failed = std::ranges::count_if(
         take.segments, [](const DenoisedSegment& s) { return fell_short(s.outcome); });
     if (failed == 0) continue;
-    fmt::print(stderr,
-               "moclean: {}: {} of {} segments did not converge; raise --max-iterations or "
-               "--tolerance\n",
-               take.file.string(), failed, take.segments.size());
+    warn(
+        "{}: {} of {} segments did not converge; raise --max-iterations or "
+        "--tolerance",
+        take.file.string(), failed, take.segments.size());
     code = ExitCode::not_converged;
   }
   return code;
@@ -109,16 +86,16 @@ ExitCode warn_if_not_converged(const std::vector<TakeReport>& takes) {
 // The lines of progress of a run.
 class RunProgress {
  public:
-  explicit RunProgress(const DenoiseOptions& options) : solving_("solving", !options.quiet) {
+  RunProgress(const DenoiseOptions& options, bool compiles)
+      : solving_("solving", !options.quiet, "segments",
+                 compiles ? "compiling kernels, first use on this device ..." : "") {
     if (options.verify) verifying_.emplace("verifying", !options.quiet);
   }
 
-  void operator()(const RunEvent& event) {
-    const auto* solved = std::get_if<SegmentsSolved>(&event);
-    if (!solved) return;
-    ProgressLine& line = solved->task == SolveTask::verifying ? *verifying_ : solving_;
-    line.show(solved->progress,
-              solved->total_is_exact ? ProgressTotal::exact : ProgressTotal::estimated);
+  void show(const SegmentsSolved& solved) {
+    ProgressLine& line = solved.task == SolveTask::verifying ? *verifying_ : solving_;
+    line.show(solved.progress,
+              solved.total_is_exact ? ProgressTotal::exact : ProgressTotal::estimated);
   }
 
  private:
@@ -126,55 +103,178 @@ class RunProgress {
   std::optional<ProgressLine> verifying_;
 };
 
-Job job_of(const DenoiseOptions& options) {
-  Job job{.files = expand_folders(options.inputs),
-          .reading = options.reading,
-          .truth_frames = options.truth_frames,
-          .chain = options.chain,
-          .max_gap = options.max_gap,
-          .keep_observed = options.keep_observed,
-          .verify = options.verify,
-          .jobs = options.jobs,
-          .memory_limit = options.memory_limit,
-          .overlap = options.overlap};
-  job.outputs = plan_outputs({.inputs = options.inputs,
-                              .files = job.files,
-                              .output = options.output,
-                              .outliers = options.outliers,
-                              .mask = options.mask,
-                              .sigma = options.sigma,
-                              .report = options.report,
-                              .format = options.format});
-  if (!options.truth.empty()) job.truths = truths_of(options.truth, job.files);
-  return job;
+// What a user may know of a take beside its report.
+Json full_record(const BatchPlan& plan, const StandardStreams& streams, std::size_t take,
+                 const TakeReport& report) {
+  TakeReport shown = report;
+  shown.file = streams.named(report.file.string());
+  shown.failure = streams.named(report.failure);
+  Json record = take_record(shown);
+  record["method"] = to_string(plan.options_of(take).chain);
+  if (!report.failure.empty()) return record;
+  record["outputs"] = Json::array();
+  for (const fs::path& file : results_of(plan.outputs, take))
+    record["outputs"].push_back(streams.named(file.string()));
+  return record;
 }
 
-RunReport run_shown(const Job& job, const DenoiseOptions& options, Backend& backend,
-                    const std::stop_token& stop) {
-  RunProgress progress(options);
-  return run_job(job, backend, std::ref(progress), stop);
+Json left_out_record(const BatchPlan& plan, std::size_t take) {
+  return {{"file", plan.files[take].string()}, {"left_out", "done before"}};
 }
 
-ExitCode run(DenoiseOptions options) {
-  if (options.memory_limit != 0) return_freed_memory();  // whoever sets a limit means it
-  complete(options);
+Json whole_record(const BatchPlan& plan, const BackendReport& backend, const RunReport& report) {
+  Json record = json_record(plan.common(), backend, report);
+  for (std::size_t i = 0; i < plan.files.size(); ++i) {
+    if (plan.done[i]) record["inputs"][i] = left_out_record(plan, i);
+    if (plan.setting_of[i] != 0)
+      record["inputs"][i]["method"] = to_string(plan.options_of(i).chain);
+  }
+  return record;
+}
+
+// Everything about the takes that goes to standard error, the failures last.
+ExitCode tell_problems(const RunReport& report) {
+  std::vector<TakeReport> written, failed;
+  for (const TakeReport& take : report.takes)
+    (take.failure.empty() ? written : failed).push_back(take);
+  tell_notes(written);
+  warn_of_unobserved(written);
+  tell_of_changes(written);
+  const ExitCode code = warn_if_not_converged(written);
+  if (failed.empty()) return code;
+  for (const TakeReport& take : failed) warn("{}", take.failure);
+  warn("{} of {} takes failed, see above", failed.size(), report.takes.size());
+  return ExitCode::failed;
+}
+
+void print_report(const BatchPlan& plan, const StandardStreams& streams, const RunReport& run,
+                  const BackendReport& backend) {
+  for (std::size_t i = 0; i < run.takes.size(); ++i)
+    if (!plan.done[i] && run.takes[i].failure.empty())
+      say("{}", streams.named(take_text(run.takes[i], plan.outputs.clean[i])));
+  say("{}", run_text(run, plan.done));
+  if (backend.profile) say("\n{}", profile_table(*backend.profile));
+}
+
+// What stands around the results of a run in a folder: the lock, the manifest, the folder itself.
+class ResultsFolder {
+ public:
+  explicit ResultsFolder(const BatchPlan& plan)
+      : folders_(plan.outputs.folders),
+        lock_(plan.outputs.root.empty() ? plan.outputs.clean.front().parent_path() / "."
+                                        : plan.outputs.root) {
+    lock_.if_alone([&] {
+      std::vector<fs::path> results;
+      for (std::size_t i = 0; i < plan.files.size(); ++i)
+        for (fs::path& file : results_of(plan.outputs, i)) results.push_back(std::move(file));
+      if (!plan.outputs.root.empty()) results.push_back(plan.outputs.root / manifest_name);
+      remove_left_of(results);
+    });
+    if (!plan.outputs.root.empty()) manifest_.emplace(plan.outputs.root);
+  }
+
+  Manifest* manifest() { return manifest_ ? &*manifest_ : nullptr; }
+
+  void finish() {
+    if (manifest_) lock_.if_alone([&] { manifest_->tidy(); });
+  }
+
+ private:
+  NewFolders folders_;  // that stay empty are removed
+  FolderLock lock_;
+  std::optional<Manifest> manifest_;
+};
+
+RunReport run_shown(const BatchPlan& plan, const StandardStreams& streams, Manifest* manifest,
+                    OpenedBackend& opened, TakeLines& lines, const std::stop_token& stop) {
+  const FirstUse first_use(opened, plan.common());
+  RunProgress progress(plan.common(), first_use.is_first());
+  std::size_t written = 0;
+  const auto sink = [&](const RunEvent& event) {
+    if (const auto* solved = std::get_if<SegmentsSolved>(&event)) progress.show(*solved);
+    if (const auto* done = std::get_if<TakeWritten>(&event)) {
+      ++written;
+      lines.add(full_record(plan, streams, done->take, *done->report));
+    }
+    if (const auto* failed = std::get_if<TakeFailed>(&event))
+      lines.add(full_record(plan, streams, failed->take, *failed->report));
+  };
+  try {
+    RunReport report = run_batch(plan, manifest, *opened.backend, sink, stop);
+    first_use.keep();
+    return report;
+  } catch (const Cancelled&) {
+    if (written == 0) throw;
+    throw Stopped(fmt::format(
+        "interrupted; {} of {} takes were written and stay, --resume goes on from there", written,
+        plan.files.size() -
+            static_cast<std::size_t>(std::ranges::count_if(plan.done, [](char d) { return d; }))));
+  }
+}
+
+ExitCode run_planned(const DenoiseLayers& layers, const DenoiseOptions& options,
+                     const StandardStreams& streams) {
+  if (needs_backend(options.chain) && options.backend == "opencl") require_driver();
   const Interrupt interrupt;  // before the threads of the OpenCL driver
   if (!options.report.empty()) require_report();
-  const Job job = job_of(options);
-  if (!options.json.empty() && options.json != "-") require_writable(options.json);
+  BatchPlan plan = plan_batch(layers, options);
+  if (options.resume) leave_out_done(Manifest(plan.outputs.root), plan);
+  for (const std::string& warning : plan.warnings) warn("{}", warning);
+  for (const std::string& note : plan.outputs.notes) warn("{}", note);
+  if (options.dry_run) {
+    say("{}", streams.named(dry_run_text(plan)));
+    return ExitCode::done;
+  }
+  for (const fs::path& file : {options.json, options.lines})
+    if (!file.empty() && file != "-") require_writable(file);
 
-  OpenedBackend opened = open_backend(options, needs_backend(options.chain),
-                                      options.profile ? Profiling::on : Profiling::off);
-  const RunReport report = run_shown(job, options, *opened.backend, interrupt.token());
+  const bool on_device = std::ranges::any_of(plan.groups(), [&](const auto& takes) {
+    return needs_backend(plan.options_of(takes[0]).chain);
+  });
+  OpenedBackend opened =
+      open_backend(options, on_device, options.profile ? Profiling::on : Profiling::off);
+  ResultsFolder folder(plan);
+  TakeLines lines(options.lines);
+  for (std::size_t i = 0; i < plan.files.size(); ++i)
+    if (plan.done[i]) lines.add(left_out_record(plan, i));
+  RunReport report = run_shown(plan, streams, folder.manifest(), opened, lines, interrupt.token());
+  folder.finish();
+  streams.send();
+  lines.check();
 
   if (options.profile)
     opened.report.profile = profile_of(*opened.device, options, report.seconds.solve);
-  if (!options.json.empty()) write_json(options.json, json_record(options, opened.report, report));
-  if (options.reports()) print_report(report, job.outputs, opened.report);
-  tell_notes(report.takes);
-  warn_of_unobserved(report.takes);
-  tell_of_changes(report.takes);
-  return warn_if_not_converged(report.takes);
+  for (TakeReport& take : report.takes) {
+    take.file = streams.named(take.file.string());
+    take.failure = streams.named(take.failure);
+  }
+  if (!options.json.empty()) write_json(options.json, whole_record(plan, opened.report, report));
+  if (options.reports() && !streams.writes()) print_report(plan, streams, report, opened.report);
+  return tell_problems(report);
+}
+
+ExitCode run(const DenoiseLayers& layers) {
+  DenoiseOptions options = layers.options();
+  if (options.limits_memory) return_freed_memory();  // whoever sets a limit means it
+  const StandardStreams streams(options);
+  try {
+    return run_planned(layers, options, streams);
+  } catch (const ArgumentError& error) {
+    throw ArgumentError(streams.named(error.what()));
+  } catch (const Cancelled&) {
+    throw;
+  } catch (const Stopped& stopped) {
+    warn("{}", stopped.what());
+    return ExitCode::interrupted;
+  } catch (const Error& error) {
+    throw Error(streams.named(error.what()));
+  }
+}
+
+ExitCode run_configured(const CLI::App& command, const DenoiseOptions& given) {
+  DenoiseLayers layers(command);
+  if (!given.config.empty()) layers.add(read_configuration(given.config));
+  return run(layers);
 }
 
 // The names joined by spaces, a line at a time.
@@ -197,8 +297,9 @@ void add_denoise(CLI::App& program, Action& action) {
   CLI::App& command = *program.add_subcommand("denoise", "Clean recordings");
   command.footer(
       "Several recordings are solved together and give the same files as single calls. The next\n"
-      "ones are read and the last ones written while the device works. If one cannot be read,\n"
-      "nothing is written for any; Ctrl-C leaves nothing: results wait under temporary names.\n"
+      "ones are read and the last ones written while the device works. If one fails, the others\n"
+      "are written all the same, and it is named at the end (docs/batches.md); a result appears\n"
+      "under its name when it is complete.\n"
       "Exit codes: 0 done, 1 failed input or device (or --verify), 2 usage, 3 written, but a\n"
       "segment did not converge, 130 interrupted.\n\n"
       "The bounds of --verify hold for the default tolerance and are the same for any other;\n"
@@ -212,10 +313,14 @@ void add_denoise(CLI::App& program, Action& action) {
       "  moclean denoise walk.bvh -o clean.csv --segment-length 200 --verify\n"
       "  moclean denoise walk.bvh -o clean.csv --method "
       "hampel:window=7,sigmas=3+butterworth:cutoff=10\n"
-      "  moclean denoise takes/ -o cleaned/ --json cleaned.json");
+      "  moclean denoise takes/ -o cleaned/ --json cleaned.json\n"
+      "  moclean denoise takes/ -o cleaned/ --config takes.toml --resume\n"
+      "  cat walk.bvh | moclean denoise - -o - --format bvh > clean.bvh");
   const auto options = std::make_shared<DenoiseOptions>();
   add_denoise_options(command, *options);
-  command.callback([&action, options] { action = [options] { return run(*options); }; });
+  command.callback([&action, &command, options] {
+    action = [&command, options] { return run_configured(command, *options); };
+  });
 }
 
 }  // namespace moclean::cli

@@ -7,6 +7,7 @@
 #include "moclean/core/error.hpp"
 #include "moclean/device/device.hpp"
 
+#include "cli/backend/driver_check.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/printing/json_record.hpp"
 #include "cli/printing/say.hpp"
@@ -34,6 +35,7 @@ Json device_record(const DeviceInfo& info) {
 }
 
 ExitCode run(bool json) {
+  require_driver();
   const std::vector<DeviceInfo> devices = list_devices();
   if (json) {
     Json records = Json::array();

@@ -13,6 +13,7 @@
 #include "moclean/run/inputs.hpp"
 
 #include "cli/commands/commands.hpp"
+#include "cli/options/checks.hpp"
 #include "cli/options/input_options.hpp"
 #include "cli/printing/json_record.hpp"
 #include "cli/printing/say.hpp"
@@ -178,7 +179,7 @@ void add_evaluate(CLI::App& program, Action& action) {
                        ->type_name("FILE");
   command.add_option("--threshold", options->threshold, "Outliers count as found above this size")
       ->needs(outliers)
-      ->check(CLI::NonNegativeNumber)
+      ->check(number_from_zero())
       ->capture_default_str()
       ->type_name("X");
   command.add_flag("--json", options->json, "Print the figures as JSON");

@@ -9,10 +9,12 @@
 #include "moclean/noise/motion_like.hpp"
 #include "moclean/run/outputs.hpp"
 
+#include "cli/backend/driver_check.hpp"
 #include "cli/backend/tuning_cache.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/commands/tuning_contest.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/options/checks.hpp"
 #include "cli/printing/say.hpp"
 
 namespace moclean::cli {
@@ -56,6 +58,7 @@ Json record_of(const TuneOptions& options, Index segments, const DeviceInfo& dev
 }
 
 ExitCode run(const TuneOptions& options) {
+  require_driver();
   const Interrupt interrupt;  // before the threads of the OpenCL driver
   if (!options.json.empty() && options.json != "-") require_writable(options.json);
   const Device device(options.device);
@@ -103,11 +106,11 @@ void add_tune(CLI::App& program, Action& action) {
       ->envname("MOCLEAN_DEVICE")
       ->type_name("SEL");
   command.add_option("--frames", options->frames, "Frames of the segments it is to be fast for")
-      ->check(CLI::Range(2, 100'000))
+      ->check(whole_number(2, 100'000))
       ->capture_default_str()
       ->type_name("N");
   command.add_option("--columns", options->columns, "Columns of the segments")
-      ->check(CLI::Range(1, 1000))
+      ->check(whole_number(1, 1000))
       ->capture_default_str()
       ->type_name("N");
   command.add_flag("--quick", options->quick, "A few choices only, in some seconds");

@@ -10,12 +10,16 @@
 #include "moclean/run/byte_size.hpp"
 #include "moclean/run/process_memory.hpp"
 
+#include "cli/options/checks.hpp"
+
 namespace moclean::cli {
 namespace {
 
+constexpr int most_jobs = 4096;  // each stage starts so many threads
+
 void add_device(CLI::App& command, BackendOptions& options) {
   command.add_option("--backend", options.backend, "OpenCL device, or the plain reference (Eigen)")
-      ->check(CLI::IsMember({"opencl", "reference"}))
+      ->check(one_of({"opencl", "reference"}))
       ->capture_default_str()
       ->type_name("BACKEND")
       ->group(backend_group);
@@ -40,7 +44,7 @@ void add_kernels(CLI::App& command, BackendOptions& options) {
           "--form", [&](const std::string& text) { options.form = parse_kernel_form(text); },
           "Form of our kernels on the OpenCL device, whatever that is: for CPUs, or for GPUs; "
           "default: that of the tuning, else gpu on GPUs and cpu elsewhere")
-      ->check(CLI::IsMember({"cpu", "gpu"}))
+      ->check(one_of({"cpu", "gpu"}))
       ->type_name("FORM")
       ->group(backend_group);
   command
@@ -59,7 +63,7 @@ void add_arithmetic(CLI::App& command, BackendOptions& options) {
           "--precision",
           [&](const std::string& text) { options.precision = parse_precision(text); },
           "Double precision throughout, or single for the frames and double for the eigenproblems")
-      ->check(CLI::IsMember({"f64", "mixed"}))
+      ->check(one_of({"f64", "mixed"}))
       ->default_str("f64")
       ->type_name("PRECISION")
       ->group(backend_group);
@@ -76,7 +80,7 @@ void add_resources(CLI::App& command, BackendOptions& options) {
       .add_option("--jobs", options.jobs,
                   "Threads for reading, for writing, and for the reference; default: all of the "
                   "machine")
-      ->check(CLI::PositiveNumber)
+      ->check(whole_number(1, most_jobs))
       ->type_name("N")
       ->group(backend_group);
   command
@@ -84,6 +88,7 @@ void add_resources(CLI::App& command, BackendOptions& options) {
           "--memory-limit",
           [&](const std::string& text) {
             options.memory_limit = parse_byte_size("--memory-limit", text);
+            options.limits_memory = true;
           },
           "Memory for recordings and for the batches of the device, which get a quarter of it: a "
           "number with K, M, G or T; default: a quarter of the machine's")

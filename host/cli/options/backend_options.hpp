@@ -28,6 +28,7 @@ struct BackendOptions {
   Precision precision = Precision::f64;
   bool use_tuning = true;  ///< what `moclean tune` has found
   int jobs = 1;
+  bool limits_memory = false;      ///< --memory-limit was given
   std::uint64_t memory_limit = 0;  ///< bytes; set by complete_backend() where it is not given
 };
 

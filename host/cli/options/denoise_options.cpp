@@ -4,23 +4,26 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "moclean/backend/opencl_backend.hpp"
 #include "moclean/core/error.hpp"
 #include "moclean/formats/formats.hpp"
 
+#include "cli/nearest.hpp"
+#include "cli/options/checks.hpp"
 #include "cli/options/input_options.hpp"
 
 namespace moclean::cli {
 namespace {
 
 constexpr const char* files_group = "Files";
-constexpr const char* method_group = "Method";
+constexpr const char* batch_group = "Many takes";
 constexpr const char* report_group = "Report";
 
-// The formats of results, as --format names them.
-std::vector<std::string> format_names() {
-  std::vector<std::string> names = extensions(can_write);
+// The formats as --format names them.
+std::vector<std::string> format_names(FormatTrait trait) {
+  std::vector<std::string> names = extensions(trait);
   for (std::string& name : names) name.erase(0, 1);  // the dot
   return names;
 }
@@ -28,14 +31,14 @@ std::vector<std::string> format_names() {
 void add_files(CLI::App& command, DenoiseOptions& options) {
   command
       .add_option("INPUT", options.inputs,
-                  with_extensions("Recordings", can_read) + ", or folders of them")
-      ->required()
+                  with_extensions("Recordings", can_read) +
+                      ", or folders of them, searched to any depth; - is standard input")
       ->type_name("");
   command
       .add_option("-o,--output", options.output,
                   with_extensions("File", can_write) +
-                      " for one input; folder, created if missing, for several")
-      ->required()
+                      " for one input; folder, created if missing, for several; - is standard "
+                      "output")
       ->type_name("OUTPUT")
       ->group(files_group);
   command
@@ -59,10 +62,22 @@ void add_files(CLI::App& command, DenoiseOptions& options) {
   command
       .add_option(
           "--format", options.format,
-          "Format of results in a folder; otherwise that of the input if possible, else npy")
-      ->check(CLI::IsMember(format_names()))
+          "Format of results in a folder or on standard output; otherwise that of the input if it "
+          "can be written, else csv")
+      ->check(one_of(format_names(can_write)))
       ->type_name("FORMAT")
       ->group(files_group);
+  command
+      .add_option("--input-format", options.input_format,
+                  "Format of standard input; default: --format")
+      ->check(one_of(format_names(can_read)))
+      ->type_name("FORMAT")
+      ->group(files_group);
+  command
+      .add_flag("--keep-raw", options.keep_raw,
+                "Put every input beside its result, as NAME.raw.EXT; then a result may replace it")
+      ->group(files_group);
+  command.add_flag("--force", options.force, "A result may replace an input")->group(files_group);
   add_input_options(command, options.reading);
   for (const char* name :
        {"--frames", "--rate", "--skeleton", "--layout", "--columns", "--missing"})
@@ -81,19 +96,19 @@ void add_segmentation(CLI::App& command, DenoiseOptions& options) {
   auto* length = command
                      .add_option("--segment-length", options.segment_length,
                                  "Equal segments of about so many frames (not rpca)")
-                     ->check(CLI::PositiveNumber)
+                     ->check(whole_number(1))
                      ->default_str("200")
                      ->type_name("N")
                      ->group(method_group);
   command.add_option("--segments", options.segments, "So many equal segments (not rpca)")
-      ->check(CLI::PositiveNumber)
+      ->check(whole_number(1))
       ->excludes(length)
       ->type_name("K")
       ->group(method_group);
   command
       .add_option("--overlap", options.segment_overlap,
                   "Frames that neighbouring segments share and that are blended (not rpca)")
-      ->check(CLI::NonNegativeNumber)
+      ->check(whole_number(0))
       ->default_str("0")
       ->type_name("FRAMES")
       ->group(method_group);
@@ -101,7 +116,7 @@ void add_segmentation(CLI::App& command, DenoiseOptions& options) {
       .add_option("--segment", options.division,
                   "Segments of equal length, or as many that end where it costs least (slra, "
                   "tslra; docs/segmentation.md)")
-      ->check(CLI::IsMember({"equal", "auto"}))
+      ->check(one_of({"equal", "auto"}))
       ->capture_default_str()
       ->type_name("HOW")
       ->group(method_group);
@@ -111,7 +126,7 @@ void add_gaps(CLI::App& command, DenoiseOptions& options) {
   command
       .add_option("--max-gap", options.max_gap,
                   "Leave gaps missing that are longer than this, whatever the method fills")
-      ->check(CLI::NonNegativeNumber)
+      ->check(number_from_zero())
       ->type_name("SECONDS")
       ->group(method_group);
   command
@@ -126,7 +141,7 @@ void add_method(CLI::App& command, DenoiseOptions& options) {
       command
           .add_option("--lambda", method.lambda,
                       "Weight of the outliers; default SCALE / sqrt(max(frames, columns))")
-          ->check(CLI::PositiveNumber)
+          ->check(positive_number())
           ->type_name("X");
   auto* scale = command.add_option("--lambda-scale", method.lambda_scale, "SCALE of that default")
                     ->excludes(lambda)
@@ -141,6 +156,7 @@ void add_method(CLI::App& command, DenoiseOptions& options) {
           ->type_name("X");
   auto* iterations =
       command.add_option("--max-iterations", method.max_iterations, "Iterations to stop at")
+          ->check(whole_number(1, 1'000'000'000))
           ->capture_default_str()
           ->type_name("N");
   auto* order =
@@ -148,11 +164,35 @@ void add_method(CLI::App& command, DenoiseOptions& options) {
           .add_option_function<std::string>(
               "--order", [&](const std::string& text) { method.order = parse_update_order(text); },
               "Update the motion first (ae, the paper) or the outliers first (ea)")
-          ->check(CLI::IsMember({"ae", "ea"}))
+          ->check(one_of({"ae", "ea"}))
           ->default_str("ae")
           ->type_name("ORDER");
   for (CLI::Option* option : {lambda, scale, rho, tolerance, iterations, order})
     option->group(method_group);
+}
+
+void add_batch(CLI::App& command, DenoiseOptions& options) {
+  command
+      .add_option(
+          "--config", options.config,
+          "Settings of a run, also per folder (docs/batches.md); the command line overrides "
+          "them")
+      ->type_name("FILE.toml")
+      ->group(batch_group);
+  command
+      .add_flag(
+          "--resume", options.resume,
+          "Leave out takes of which moclean.manifest.jsonl in OUTPUT says that they are done: "
+          "same input, options and version, results as they were written")
+      ->group(batch_group);
+  command
+      .add_flag("--all-or-nothing", options.all_or_nothing,
+                "Write nothing if a take fails; otherwise the others of several are written")
+      ->group(batch_group);
+  command
+      .add_flag("--dry-run", options.dry_run,
+                "Say what would be done and to which file, do nothing")
+      ->group(batch_group);
 }
 
 void add_overlap(CLI::App& command, DenoiseOptions& options) {
@@ -191,14 +231,21 @@ void add_report(CLI::App& command, DenoiseOptions& options) {
       ->type_name("FILE")
       ->group(report_group);
   command
+      .add_option("--lines", options.lines,
+                  "Write a line of JSON per take, as soon as it is done; - is standard output")
+      ->type_name("FILE")
+      ->group(report_group);
+  command
       .add_flag("--verify", options.verify,
-                "Solve with the reference, too; write nothing and exit 1 if they differ")
+                "Solve with the reference, too; a take for which they differ fails")
       ->group(report_group);
   command
       .add_flag("--profile", options.profile,
                 "Measure every kernel of the OpenCL device: calls, time, rates, share of the peak")
       ->group(report_group);
-  command.add_flag("--quiet", options.quiet, "Print nothing but warnings and errors")
+  command
+      .add_flag("--quiet", options.quiet,
+                "Print nothing but what changed much, warnings and errors")
       ->group(report_group);
 }
 
@@ -263,6 +310,38 @@ void require_sigma(const DenoiseOptions& options) {
                                     to_string(options.chain)));
 }
 
+// Before the method is parsed, whose message lists all steps: who mistyped one wants the nearest.
+void require_known_steps(std::string_view method) {
+  const std::vector<std::string_view> views = step_names();
+  const std::vector<std::string> names(views.begin(), views.end());
+  while (!method.empty()) {
+    const std::string_view step = method.substr(0, method.find('+'));
+    const std::string_view name = step.substr(0, step.find(':'));
+    if (std::ranges::find(names, name) == names.end())
+      if (const std::string guess = did_you_mean(name, names); !guess.empty())
+        throw ArgumentError(fmt::format("unknown method '{}', expected one of {}{}", name,
+                                        fmt::join(names, ", "), guess));
+    method.remove_prefix(std::min(method.size(), step.size() + 1));
+  }
+}
+
+void require_files(const DenoiseOptions& options) {
+  if (options.inputs.empty())
+    throw ArgumentError(
+        "INPUT is required: recordings or folders of them (see moclean denoise "
+        "--help)");
+  if (options.output.empty())
+    throw ArgumentError(
+        "-o OUTPUT is required: a file, for several inputs a folder (see moclean "
+        "denoise --help)");
+  if (options.json == "-" && options.lines == "-")
+    throw ArgumentError("--json - and --lines - would both write to standard output");
+  if (options.output == "-" && (options.json == "-" || options.lines == "-"))
+    throw ArgumentError(
+        "-o - writes the recording to standard output; give --json and --lines a "
+        "file");
+}
+
 std::optional<Segmentation> segmentation_given(const DenoiseOptions& options) {
   if (options.segment_length) return Segmentation{.length = *options.segment_length};
   if (options.segments) return Segmentation{.segments = *options.segments};
@@ -280,9 +359,11 @@ void add_denoise_options(CLI::App& command, DenoiseOptions& options) {
   add_overlap(command, options);
   add_truth(command, options);
   add_report(command, options);
+  add_batch(command, options);
 }
 
 void complete(DenoiseOptions& options) {
+  require_files(options);
   require_opencl(options);
   complete_backend(options);
   const bool mixed = options.precision == Precision::mixed;
@@ -292,6 +373,7 @@ void complete(DenoiseOptions& options) {
   if (mixed && defaults.tolerance < mixed_tolerance)
     throw ArgumentError("--precision mixed reaches a tolerance of 1e-06 at best");
   check(defaults);
+  require_known_steps(options.method_name);
   options.chain = parse_chain(options.method_name,
                               {defaults, segmentation_given(options),
                                options.segment_overlap.value_or(0), options.division == "auto"});

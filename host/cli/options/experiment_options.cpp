@@ -4,6 +4,7 @@
 
 #include "moclean/backend/opencl_backend.hpp"
 
+#include "cli/options/checks.hpp"
 #include "cli/options/input_options.hpp"
 
 namespace moclean::cli {
@@ -27,7 +28,7 @@ void add_table_options(CLI::App& command, TableOptions& options) {
       ->required()
       ->type_name("");
   command.add_option("--seeds", options.seeds, "So many noises per take, of seeds 1 to N")
-      ->check(CLI::PositiveNumber)
+      ->check(whole_number(1, 1'000'000))
       ->default_val(5)
       ->type_name("N");
   add_frames_option(command, options.frames,
@@ -46,7 +47,7 @@ void add_grid_options(CLI::App& command, GridOptions& options) {
                   "again")
       ->type_name("FOLDER");
   command.add_option("--seeds", options.seeds, "Seeds 1 to N instead of those of the grid file")
-      ->check(CLI::PositiveNumber)
+      ->check(whole_number(1, 1'000'000))
       ->type_name("N");
   add_frames_option(command, options.frames, "Use frames A up to B - 1 of takes that state none");
   add_common(command, options);

@@ -10,6 +10,8 @@
 
 #include "moclean/core/error.hpp"
 
+#include "cli/options/checks.hpp"
+
 namespace moclean::cli {
 namespace {
 
@@ -51,7 +53,7 @@ void add_frames_option(CLI::App& command, FrameRange& frames, const std::string&
 void add_file_options(CLI::App& command, double& rate, std::filesystem::path& skeleton) {
   command.add_option("--rate", rate, "Frame rate of files that state none")
       ->type_name("HZ")
-      ->check(CLI::PositiveNumber);
+      ->check(positive_number());
   command
       .add_option("--skeleton", skeleton,
                   "Skeleton of .amc files; otherwise the .asf beside them that fits their name")
@@ -69,7 +71,7 @@ void add_column_options(CLI::App& command, ReadOptions& options) {
               [&options, layouts](const std::string& name) { options.layout = layouts.at(name); },
               "What the columns of tables and arrays are, whatever their names: points "
               "of three coordinates, of two, or plain channels")
-          ->check(CLI::IsMember({"points3", "points2", "plain"}))
+          ->check(one_of({"points3", "points2", "plain"}))
           ->type_name("LAYOUT");
   command
       .add_option("--columns", options.columns,

@@ -98,9 +98,15 @@ Json change_record(const Change& changed) {
   return record;
 }
 
+}  // namespace
+
 Json take_record(const TakeReport& take) {
   Json record;
   record["file"] = take.file.string();
+  if (!take.failure.empty()) {
+    record["error"] = take.failure;
+    return record;
+  }
   record["frames"] = take.frames;
   record["columns"] = take.columns;
   record["seconds"]["read"] = take.read_seconds;
@@ -124,8 +130,6 @@ Json take_record(const TakeReport& take) {
   if (take.verification) record["agreement"] = agreement_record(*take.verification);
   return record;
 }
-
-}  // namespace
 
 Json json_record(const DenoiseOptions& options, const BackendReport& backend,
                  const RunReport& run) {

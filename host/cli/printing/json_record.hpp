@@ -19,6 +19,9 @@ struct BackendReport;
 /// The record of a whole run.
 Json json_record(const DenoiseOptions& options, const BackendReport& backend, const RunReport& run);
 
+/// The record of one take of a run: what became of it, or why it failed.
+Json take_record(const TakeReport& take);
+
 /// JSON as text with a newline at its end. Numbers that are not finite become null, and bytes that
 /// are not UTF-8 (file names) the replacement character.
 std::string to_text(const Json& json);

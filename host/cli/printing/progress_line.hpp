@@ -14,8 +14,10 @@ enum class ProgressTotal { exact, estimated };
 /// a terminal. The destructor clears it.
 class ProgressLine {
  public:
-  /// `task` starts the line, e.g. "solving"; `unit` is what is counted.
-  ProgressLine(std::string task, bool wanted, std::string unit = "segments");
+  /// `task` starts the line, e.g. "solving"; `unit` is what is counted; `waiting` is said until the
+  /// first is finished.
+  ProgressLine(std::string task, bool wanted, std::string unit = "segments",
+               std::string waiting = "");
   ~ProgressLine();
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
@@ -29,14 +31,17 @@ class ProgressLine {
   std::string task_;
   std::string unit_;
   bool visible_;
-  Clock::time_point begin_ = Clock::now();
+  std::string waiting_;
+  Clock::time_point begin_ = Clock::now();  // from the first finished one on: when that was
+  Index begun_at_ = 0;                      // how many were finished then
   Clock::time_point shown_ = {};
 };
 
 /// The text of the line, for instance `solving: 12 of 140 segments, 35.0 segments/s, 4 s left`.
-/// Rate and time left are absent until a segment has finished; an estimated total is `about 140`.
+/// `seconds` are those in which all but the first `before` have finished; rate and time left are
+/// absent until a few have. An estimated total is `about 140`.
 std::string progress_text(const std::string& task, const Progress& progress, double seconds,
                           ProgressTotal total = ProgressTotal::exact,
-                          const std::string& unit = "segments");
+                          const std::string& unit = "segments", Index before = 0);
 
 }  // namespace moclean::cli

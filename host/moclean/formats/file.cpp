@@ -24,6 +24,15 @@ fs::path temporary_beside(const fs::path& target) {
 
 }  // namespace
 
+bool is_left_of(const fs::path& file, const std::string& target_name) {
+  constexpr std::size_t digits = 16;
+  const std::string name = file.filename().string(), begin = "." + target_name + ".", end = ".tmp";
+  if (name.size() != begin.size() + digits + end.size() || !name.starts_with(begin) ||
+      !name.ends_with(end))
+    return false;
+  return name.find_first_not_of("0123456789abcdef", begin.size()) == begin.size() + digits;
+}
+
 std::string read_file(const fs::path& file) {
   std::error_code error;
   if (!fs::exists(file, error)) throw FileError(file, "there is no such file");

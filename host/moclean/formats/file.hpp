@@ -10,6 +10,10 @@ namespace moclean {
 /// The whole content of a file. Throws FileError if it cannot be opened or read.
 std::string read_file(const std::filesystem::path& file);
 
+/// Whether a file is what an AtomicFile that was never destroyed (its process was killed) has left
+/// of a target of this name, in the same folder.
+bool is_left_of(const std::filesystem::path& file, const std::string& target_name);
+
 /// A file that appears under its name only when it is complete.
 ///
 /// Everything goes to a temporary file beside the target; commit() renames it. Without commit()
@@ -23,6 +27,9 @@ class AtomicFile {
   AtomicFile& operator=(AtomicFile&&) = delete;
 
   const std::filesystem::path& target() const { return target_; }
+
+  /// Where the bytes are until commit().
+  const std::filesystem::path& temporary() const { return temporary_; }
 
   /// Appends bytes. Throws FileError, e.g. when the disk is full.
   void write(std::string_view bytes);

@@ -6,6 +6,7 @@ namespace moclean {
 namespace {
 
 constexpr std::uint64_t copy_of_take = 1, copy_of_truth = 1;
+constexpr std::uint64_t copies_in_page = 2;  // status and sigma
 
 // A mask and sigma.
 std::uint64_t copies_of_sides(const OutputPlan& outputs) {
@@ -22,7 +23,8 @@ std::uint64_t copies_until_solved(const Job& job) {
 
 std::uint64_t copies_until_written(const Job& job) {
   std::uint64_t copies = copies_in_result + copies_of_sides(job.outputs);
-  if (!job.outputs.reports.empty()) copies += copy_of_take + copy_of_truth + copies_in_text;
+  if (!job.outputs.reports.empty())
+    copies += copies_in_page + copy_of_take + copy_of_truth + copies_in_text;
   return copies;
 }
 

@@ -84,10 +84,10 @@ class Run {
       : job_(job),
         backend_(backend),
         stop_(stop),
-        log_(job.on_failure, job.files.size(), sink),
+        log_(job.on_failure, job.files.size(), with_reports(sink)),
         rules_(rules_of(job, backend.traits())),
         budget_(host_limit(job)),
-        writer_(job.outputs, job.jobs, log_),
+        writer_(job, log_),
         reader_(job, rules_, budget_, log_, stop),
         solver_(SolveTask::solving, job, backend, log_, stop) {
     report_.takes.resize(job.files.size());
@@ -115,6 +115,24 @@ class Run {
   }
 
  private:
+  // By the time a take is written or has failed no other thread works on its report.
+  EventSink with_reports(const EventSink& sink) {
+    if (!sink) return {};
+    return [this, sink](const RunEvent& event) {
+      if (const auto* written = std::get_if<TakeWritten>(&event)) {
+        TakeReport& report = report_.takes[written->take];
+        report.write_seconds = writer_.seconds(written->take);
+        sink(TakeWritten{written->take, &report});
+      } else if (const auto* failed = std::get_if<TakeFailed>(&event)) {
+        TakeReport& report = report_.takes[failed->take];
+        report.failure = failed->problem;
+        sink(TakeFailed{failed->take, failed->problem, &report});
+      } else {
+        sink(event);
+      }
+    };
+  }
+
   void overlapped() {
     for (TakeBatch batch = reader_.next(); batch.size() > 0; batch = reader_.next()) {
       solve(batch);
@@ -230,7 +248,8 @@ class Run {
     if (job_.keep_observed) keep_observed(clip, trusted, take.result);
     report.status = count_status(clip, take.result, trusted);
     report.changed = change_of(clip, take.result.motion, report.status);
-    if (!job_.outputs.masks.empty()) take.mask = status_numbers(clip, take.result, trusted);
+    if (!job_.outputs.masks.empty() || !job_.outputs.reports.empty())
+      take.mask = status_numbers(clip, take.result, trusted);
     if (!take.truth) return;
     const Matrix& truth = take.truth->samples;
     report.truth = TruthReport{.file = job_.truths[take.index],
@@ -251,7 +270,7 @@ class Run {
           {.index = take.index,
            .clean = std::move(clean),
            .outliers = std::move(take.result.outliers),
-           .mask = std::move(take.mask),
+           .mask = job_.outputs.masks.empty() ? std::nullopt : std::move(take.mask),
            .sigma = job_.outputs.sigmas.empty() ? std::nullopt : std::move(take.result.sigma),
            .report = std::move(page),
            .memory = std::move(take.memory)});
@@ -266,6 +285,8 @@ class Run {
     std::vector<int> parents = parents_of(noisy, take.truth ? &*take.truth : nullptr);
     ReportTake parts{.noisy = like(noisy, std::move(noisy.samples)),
                      .truth = std::move(take.truth),
+                     .status = take.mask,
+                     .sigma = take.result.sigma,
                      .parents = std::move(parents),
                      .segments = report.segments};
     return take_page(job_, backend_, report, std::move(parts));

@@ -24,15 +24,19 @@ struct SegmentsSolved {
   bool total_is_exact = true;  ///< or estimated from the size of files not read yet
 };
 
+struct TakeReport;
+
 /// All results of a take stand under their names.
 struct TakeWritten {
   std::size_t take = 0;
+  const TakeReport* report = nullptr;  ///< complete; for as long as the sink is told
 };
 
 /// Nothing will be written for a take.
 struct TakeFailed {
   std::size_t take = 0;
-  std::string problem;  ///< a complete message that names the file
+  std::string problem;                 ///< a complete message that names the file
+  const TakeReport* report = nullptr;  ///< as far as the take came; likewise
 };
 
 /// What happens during a run.

@@ -2,12 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <system_error>
 
 #include <fmt/format.h>
 
 #include "moclean/backend/backend.hpp"
 #include "moclean/core/error.hpp"
 #include "moclean/core/usable.hpp"
+#include "moclean/formats/amc.hpp"
+#include "moclean/formats/find_skeleton.hpp"
 #include "moclean/formats/formats.hpp"
 
 namespace moclean {
@@ -15,30 +19,118 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<fs::path> recordings_in(const fs::path& folder) {
-  std::vector<fs::path> found;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder))
-    if (entry.is_regular_file() && is_of_format(entry.path(), can_read))
-      found.push_back(entry.path());
-  if (found.empty())
-    throw FileError(folder, fmt::format("holds no recording ({})", any_extension(can_read)));
-  std::ranges::sort(found);
-  return found;
+bool is_hidden(const fs::path& file) {
+  const std::string name = file.filename().string();
+  return name.starts_with('.') || name.starts_with('~');
+}
+
+// `NAME.raw.EXT` beside a `NAME.EXT`.
+bool is_kept_raw(const fs::path& file) {
+  const fs::path stem = file.stem();
+  return stem.extension() == ".raw" &&
+         fs::exists(file.parent_path() / (stem.stem() += file.extension()));
+}
+
+bool lies_in(const fs::path& inner, const fs::path& outer) {
+  return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
+}
+
+// Goes through folders; enters each once, by whatever name it comes to it.
+class Walk {
+ public:
+  explicit Walk(const LeavesOut& leave_out) : leave_out_(leave_out) {}
+
+  // The recordings in a folder that are not among those of earlier folders.
+  std::vector<fs::path> recordings_in(const fs::path& folder) {
+    found_.clear();
+    met_again_ = false;
+    std::vector<fs::path> links = {folder};
+    while (!links.empty()) {  // those in a linked folder are followed after it
+      std::vector<fs::path> deeper;
+      for (const fs::path& link : links) enter(link, deeper);
+      links = std::move(deeper);
+    }
+    if (found_.empty() && !met_again_)
+      throw FileError(folder, fmt::format("holds no recording ({})", any_extension(can_read)));
+    std::ranges::sort(found_);
+    return std::move(found_);
+  }
+
+ private:
+  // Real folders first: what is in them has the names by which people know it.
+  void enter(const fs::path& folder, std::vector<fs::path>& links) {
+    std::error_code error;
+    const fs::path real = fs::canonical(folder, error);
+    if (!error && !entered_.insert(real).second) {
+      met_again_ = true;
+      return;
+    }
+    fs::directory_iterator entries;
+    if (!error) entries = fs::directory_iterator(folder, error);
+    if (error) throw FileError(folder, "cannot be read: " + error.message());
+    std::vector<fs::path> inside;
+    for (const fs::directory_entry& entry : entries) inside.push_back(entry.path());
+    std::ranges::sort(inside);
+    for (const fs::path& path : inside) {
+      if (is_hidden(path) || (leave_out_ && leave_out_(path))) continue;
+      if (!fs::is_directory(path, error))
+        add(path);
+      else if (!fs::is_symlink(path))
+        enter(path, links);
+      else if (!lies_in(real, fs::weakly_canonical(path)))  // else it leads back
+        links.push_back(path);
+    }
+  }
+
+  void add(const fs::path& file) {
+    std::error_code ignored;
+    if (fs::is_regular_file(file, ignored) && is_of_format(file, can_read) && !is_kept_raw(file))
+      found_.push_back(file);
+  }
+
+  const LeavesOut& leave_out_;
+  std::set<fs::path> entered_;
+  bool met_again_ = false;  // a folder that was entered before
+  std::vector<fs::path> found_;
+};
+
+// A link is a file of its own; the folder it is in may have many names.
+fs::path place_of(const fs::path& file) {
+  return fs::weakly_canonical(file.has_parent_path() ? file.parent_path() : fs::path(".")) /
+         file.filename();
 }
 
 }  // namespace
 
-std::vector<fs::path> expand_folders(const std::vector<fs::path>& inputs) {
+std::vector<fs::path> expand_folders(const std::vector<fs::path>& inputs,
+                                     const LeavesOut& leave_out) {
+  Walk walk(leave_out);
   std::vector<fs::path> files;
+  std::set<fs::path> places;
+  const auto add = [&](const fs::path& file) {
+    if (places.insert(place_of(file)).second) files.push_back(file);
+  };
   for (const fs::path& input : inputs) {
     if (!fs::exists(input)) throw FileError(input, "there is no such file or folder");
     if (!fs::is_directory(input)) {
-      files.push_back(input);
+      add(input);
       continue;
     }
-    for (fs::path& file : recordings_in(input)) files.push_back(std::move(file));
+    for (const fs::path& file : walk.recordings_in(input)) add(file);
   }
   return files;
+}
+
+fs::path raw_name(const fs::path& input) { return (input.stem() += ".raw") += input.extension(); }
+
+std::optional<fs::path> skeleton_of(const fs::path& file, const fs::path& given) {
+  if (format_of(file) != &amc_format) return std::nullopt;
+  if (!given.empty()) return given;
+  try {
+    return find_skeleton(file);
+  } catch (const FileError&) {
+    return std::nullopt;
+  }
 }
 
 // The solvers refuse such samples, too, but know neither the file nor the frame in it.

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -8,10 +10,25 @@
 
 namespace moclean {
 
-/// Replaces every folder among `inputs` by the recordings in it (of formats that can be read, not
-/// those of sub-folders), sorted by name. Throws FileError for a file that does not exist or a
-/// folder that holds no recording.
-std::vector<std::filesystem::path> expand_folders(const std::vector<std::filesystem::path>& inputs);
+/// Is asked about every file and folder found in a folder: whether it is no input.
+using LeavesOut = std::function<bool(const std::filesystem::path&)>;
+
+/// Replaces every folder among `inputs` by the recordings in it and in its sub-folders (of formats
+/// that can be read), sorted by path. Left out are hidden files and folders, what editors and
+/// office programs keep beside an open file (`~$walk.csv`), the kept input `NAME.raw.EXT` beside a
+/// `NAME.EXT`, and what `leave_out` says. Links to folders are followed, every folder is entered
+/// once. A file that is given twice, also within a folder, is taken once. Throws FileError for a
+/// file that does not exist, a folder that cannot be read or one that holds no recording.
+std::vector<std::filesystem::path> expand_folders(const std::vector<std::filesystem::path>& inputs,
+                                                  const LeavesOut& leave_out = {});
+
+/// The name under which `NAME.EXT` is kept beside its result: `NAME.raw.EXT`.
+std::filesystem::path raw_name(const std::filesystem::path& input);
+
+/// The .asf without which an .amc cannot be read: `given`, or the one that is found for it. Empty
+/// for other files, and where there is none, of which reading the file says more.
+std::optional<std::filesystem::path> skeleton_of(const std::filesystem::path& file,
+                                                 const std::filesystem::path& given);
 
 /// What a method needs of a recording.
 struct InputNeeds {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -21,6 +22,16 @@ enum class FailurePolicy {
   each_on_its_own  ///< it is recorded with its error, and the others are written
 };
 
+/// A result that is complete but does not have its name yet.
+struct CompleteFile {
+  std::filesystem::path target;
+  std::filesystem::path temporary;  ///< where its bytes are
+};
+
+/// Is told of all results of a take before they get their names, from any thread of the run; what
+/// it throws is a failure of the take.
+using BeforeCommit = std::function<void(std::size_t take, const std::vector<CompleteFile>& files)>;
+
 /// What a run works on: all but the backend, as plain values.
 struct Job {
   std::vector<std::filesystem::path> files = {};  ///< one per take
@@ -37,6 +48,7 @@ struct Job {
   int jobs = 1;                                         ///< threads of each stage
   std::uint64_t memory_limit = default_memory_limit();  ///< bytes; see device_share()
   bool overlap = true;  ///< of the stages; without it all takes are in memory at once
+  BeforeCommit before_commit = {};
   FailurePolicy on_failure = FailurePolicy::all_or_nothing;
 };
 

@@ -1,16 +1,22 @@
 #include "moclean/run/outputs.hpp"
 
+#include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/formats/amc.hpp"
 #include "moclean/formats/bvh.hpp"
+#include "moclean/formats/csv.hpp"
 #include "moclean/formats/extension.hpp"
 #include "moclean/formats/formats.hpp"
-#include "moclean/formats/npy.hpp"
+#include "moclean/run/inputs.hpp"
 
 namespace moclean {
 namespace {
@@ -34,10 +40,12 @@ void require_writable_folder(const fs::path& folder, const fs::path& target) {
 void require_creatable_folder(const fs::path& folder) {
   const fs::path plain =
       folder.has_filename() ? folder : folder.parent_path();  // no slash at its end
-  if (fs::exists(plain) && !fs::is_directory(plain))
+  const bool is_there = fs::exists(plain);
+  if (is_there ? !fs::is_directory(plain) : format_of(folder) != nullptr)
     throw ArgumentError(fmt::format(
-        "{} is a file; several inputs, or a folder of them, need a folder for the results",
-        plain.string()));
+        "{} {}; several inputs, or a folder of them, need a folder for the results{}",
+        plain.string(), is_there ? "is a file" : "is the name of a file",
+        is_there ? "" : fmt::format(" (a new one of that name is {}/)", plain.string())));
   fs::path existing = fs::absolute(folder).lexically_normal();
   while (!fs::exists(existing)) existing = existing.parent_path();
   require_writable_folder(existing, folder);
@@ -61,16 +69,21 @@ void require_rotations(const fs::path& input, const fs::path& output) {
       any_extension(holds_any_samples)));
 }
 
-std::string extension_of_result(const fs::path& input, const std::string& format) {
-  if (!format.empty()) return "." + format;
-  return is_of_format(input, holds_any_samples) ? extension(input)
-                                                : std::string(npy_format.extension);
+std::string format_of_file(const OutputRequest& request, std::size_t file) {
+  return request.formats.empty() ? request.format : request.formats[file];
 }
 
-std::vector<fs::path> reports_in(const fs::path& folder, const std::vector<fs::path>& results) {
-  std::vector<fs::path> reports;
-  for (const fs::path& result : results) reports.push_back(folder / (result.stem() += ".html"));
-  return reports;
+// `trait` is what the format has to be able to.
+std::string extension_of_result(const fs::path& input, const std::string& format,
+                                FormatTrait trait) {
+  if (!format.empty() && is_of_format("x." + format, trait)) return "." + format;
+  return is_of_format(input, trait) ? extension(input) : std::string(csv_format.extension);
+}
+
+// As fs::path::replace_extension(), but leaves an extension alone that is none of a format's:
+// `walk.1` is `walk.1.html`.
+fs::path with_extension(const fs::path& file, const std::string& extension) {
+  return (file.parent_path() / file.stem()) += extension;
 }
 
 void require_writable_report(const fs::path& file) {
@@ -80,18 +93,15 @@ void require_writable_report(const fs::path& file) {
 }
 
 std::vector<fs::path> files_in(const fs::path& folder, const OutputRequest& request,
-                               const std::string& format) {
-  std::map<fs::path, fs::path> inputs;
+                               FormatTrait trait) {
   std::vector<fs::path> results;
-  for (const fs::path& input : request.files) {
-    const fs::path name = input.stem().string() + extension_of_result(input, format);
-    const auto [other, first] = inputs.emplace(input.stem(), input);
-    if (!first)
-      throw ArgumentError(fmt::format("{} and {} would both become {}; give them in two calls",
-                                      other->second.string(), input.string(),
-                                      (folder / input.stem()).string()));
-    require_rotations(input, name);
-    results.push_back(folder / name);
+  for (std::size_t i = 0; i < request.files.size(); ++i) {
+    const fs::path& input = request.files[i];
+    const std::string kind = extension_of_result(input, format_of_file(request, i), trait);
+    // `Walk.BVH` stays `Walk.BVH`.
+    const bool same = kind == extension(input);
+    const fs::path below = below_its_folder(request.inputs, input);
+    results.push_back(folder / (same ? below : with_extension(below, kind)));
   }
   return results;
 }
@@ -115,19 +125,171 @@ std::array<SideOutput, 3> side_outputs(const OutputRequest& request, OutputPlan&
           SideOutput{"--sigma", request.sigma, plan.sigmas}};
 }
 
+// What writes a file: the input of which take, and the option that asks for it.
+struct Writer {
+  const fs::path& input;
+  const char* option;
+};
+
+void require_different(const Writer& a, const Writer& b, const fs::path& file) {
+  if (a.input == b.input)
+    throw ArgumentError(
+        fmt::format("{} and {} would both write {}", a.option, b.option, file.string()));
+  throw ArgumentError(fmt::format("{} and {} would both become {}; give them in two calls",
+                                  a.input.string(), b.input.string(), file.string()));
+}
+
 void require_different_files(const OutputRequest& request, OutputPlan& plan) {
-  std::map<fs::path, const char*> options;
-  for (const fs::path& file : plan.clean) options.emplace(fs::weakly_canonical(file), "-o");
-  for (const SideOutput& side : side_outputs(request, plan))
-    for (const fs::path& file : side.files) {
-      const auto [other, is_new] = options.emplace(fs::weakly_canonical(file), side.option);
-      if (!is_new)
-        throw ArgumentError(fmt::format("{} and {} would both write {}", other->second, side.option,
-                                        file.string()));
+  std::map<fs::path, Writer> writers;
+  const auto add = [&](const std::vector<fs::path>& files, const char* option) {
+    for (std::size_t i = 0; i < files.size(); ++i) {
+      const Writer writer{request.files[i], option};
+      const auto [other, is_new] = writers.emplace(fs::weakly_canonical(files[i]), writer);
+      if (!is_new) require_different(other->second, writer, files[i]);
     }
+  };
+  add(plan.clean, "-o");
+  for (const SideOutput& side : side_outputs(request, plan)) add(side.files, side.option);
+  add(plan.reports, "--report");
+}
+
+// A file by whatever name, as far as it exists.
+using FileIdentity = std::pair<dev_t, ino_t>;
+
+std::optional<FileIdentity> identity_of(const fs::path& file) {
+  struct stat facts {};
+  if (stat(file.c_str(), &facts) != 0) return std::nullopt;
+  return FileIdentity{facts.st_dev, facts.st_ino};
+}
+
+// Where a result has replaced its input, that is what was kept of it. A file that is neither is a
+// newer input, and what was kept of an older one is not to be lost.
+void keep_inputs(const OutputRequest& request, OutputPlan& plan) {
+  for (std::size_t i = 0; i < request.files.size(); ++i) {
+    const fs::path& input = request.files[i];
+    const fs::path kept = plan.clean[i].parent_path() / raw_name(input.filename());
+    const auto identity = identity_of(input);
+    if (!identity || identity != identity_of(plan.clean[i]) || !fs::exists(kept)) {
+      plan.copies[i].push_back({input, kept});
+      continue;
+    }
+    if (!(request.is_result && request.is_result(input)) && read_file(input) != read_file(kept))
+      throw ArgumentError(
+          fmt::format("{} was kept of an earlier {}, which has changed since; move "
+                      "one of them away",
+                      kept.string(), input.filename().string()));
+    plan.sources[i] = kept;
+  }
+}
+
+// An .amc can be read with its .asf only.
+void keep_skeletons(const OutputRequest& request, OutputPlan& plan) {
+  for (std::size_t i = 0; i < request.files.size(); ++i) {
+    if (format_of(plan.clean[i]) != &amc_format || !is_of_format(request.files[i], can_write))
+      continue;
+    std::optional<fs::path> skeleton = skeleton_of(
+        request.files[i], request.skeletons.empty() ? fs::path() : request.skeletons[i]);
+    if (!skeleton) continue;  // reading the take says why
+    const fs::path beside = plan.clean[i].parent_path() / skeleton->filename();
+    if (identity_of(*skeleton) != identity_of(beside))
+      plan.copies[i].push_back({*std::move(skeleton), beside});
+  }
+}
+
+void require_no_input(const OutputRequest& request, const OutputPlan& plan) {
+  std::map<FileIdentity, const fs::path*> read;
+  const auto add = [&](const std::vector<fs::path>& files) {
+    for (const fs::path& file : files)
+      if (const auto identity = identity_of(file)) read.emplace(*identity, &file);
+  };
+  add(request.files);
+  add(request.also_read);
+  const auto require = [&](const fs::path& output, const fs::path* allowed) {
+    const auto identity = identity_of(output);
+    const auto input = identity ? read.find(*identity) : read.end();
+    if (input == read.end() || (allowed && *input->second == *allowed)) return;
+    throw ArgumentError(fmt::format(
+        "{} is an input{}; --force replaces it, --keep-raw keeps it as {} beside the result",
+        output.string(),
+        *input->second == output ? "" : fmt::format(" ({})", input->second->string()),
+        raw_name(output.filename()).string()));
+  };
+  for (std::size_t i = 0; i < plan.clean.size(); ++i)
+    require(plan.clean[i], request.keep_raw ? &request.files[i] : nullptr);
+  for (const auto* files : {&plan.outliers, &plan.masks, &plan.sigmas, &plan.reports})
+    for (const fs::path& file : *files) require(file, nullptr);
+  for (const auto& copies : plan.copies)
+    for (const FileCopy& copy : copies) require(copy.to, nullptr);
+}
+
+void note_other_formats(const OutputRequest& request, OutputPlan& plan) {
+  std::map<std::string, int> counts;
+  for (std::size_t i = 0; i < request.files.size(); ++i)
+    if (format_of_file(request, i).empty() && !is_of_format(request.files[i], can_write))
+      ++counts[extension(request.files[i])];
+  for (const auto& [kind, count] : counts)
+    plan.notes.push_back(fmt::format("{} cannot be written: {} of such takes become{} {}", kind,
+                                     count, count == 1 ? "s" : "", csv_format.extension));
+}
+
+void add_folders(const std::vector<fs::path>& files, std::vector<fs::path>& folders) {
+  for (const fs::path& file : files)
+    if (std::ranges::find(folders, file.parent_path()) == folders.end())
+      folders.push_back(file.parent_path());
+}
+
+void plan_in_folders(const OutputRequest& request, OutputPlan& plan) {
+  plan.root = request.output;
+  plan.clean = files_in(request.output, request, can_write);
+  for (std::size_t i = 0; i < plan.clean.size(); ++i)
+    require_rotations(request.files[i], plan.clean[i]);
+  std::vector<fs::path> roots = {request.output};
+  for (const SideOutput& side : side_outputs(request, plan)) {
+    if (side.requested.empty()) continue;
+    side.files = files_in(side.requested, request, holds_any_samples);
+    roots.push_back(side.requested);
+  }
+  if (!request.report.empty()) {
+    for (const fs::path& file : request.files)
+      plan.reports.push_back(request.report /
+                             with_extension(below_its_folder(request.inputs, file), ".html"));
+    roots.push_back(request.report);
+  }
+  for (const fs::path& folder : roots) require_creatable_folder(folder);
+  plan.folders = roots;
+  for (const auto* files : {&plan.clean, &plan.outliers, &plan.masks, &plan.sigmas, &plan.reports})
+    add_folders(*files, plan.folders);
+  note_other_formats(request, plan);
+}
+
+void plan_single(const OutputRequest& request, OutputPlan& plan) {
+  plan.clean = {request.output};
+  require_format(request.output, request.format);
+  require_rotations(request.inputs.front(), request.output);
+  for (const SideOutput& side : side_outputs(request, plan)) {
+    if (side.requested.empty()) continue;
+    side.files = {side.requested};
+    require_format(side.requested, request.format);
+    if (!is_of_format(side.requested, holds_any_samples))
+      throw ArgumentError(fmt::format("{}: holds rotations, {} needs {}", side.requested.string(),
+                                      side.option, any_extension(holds_any_samples)));
+  }
+  if (request.report.empty()) return;
+  plan.reports = {request.report};
+  require_writable_report(request.report);
 }
 
 }  // namespace
+
+fs::path below_its_folder(const std::vector<fs::path>& inputs, const fs::path& file) {
+  const fs::path plain = file.lexically_normal();
+  for (const fs::path& input : inputs) {
+    if (!fs::is_directory(input)) continue;
+    const fs::path below = plain.lexically_relative((input / "").lexically_normal());
+    if (!below.empty() && *below.begin() != ".." && below != ".") return below;
+  }
+  return file.filename();
+}
 
 void require_writable(const fs::path& file) {
   if (fs::is_directory(file)) throw FileError(file, "cannot be written: it is a folder");
@@ -143,38 +305,13 @@ void require_writable_recording(const fs::path& file) {
 
 OutputPlan plan_outputs(const OutputRequest& request) {
   OutputPlan plan;
-  if (wants_folder(request)) {
-    plan.clean = files_in(request.output, request, request.format);
-    plan.folders.push_back(request.output);
-    for (const SideOutput& side : side_outputs(request, plan)) {
-      if (side.requested.empty()) continue;
-      const bool has_rotations = is_of_format("x." + request.format, has_skeleton);
-      side.files = files_in(side.requested, request, has_rotations ? "" : request.format);
-      plan.folders.push_back(side.requested);
-    }
-    if (!request.report.empty()) {
-      plan.reports = reports_in(request.report, plan.clean);
-      plan.folders.push_back(request.report);
-    }
-    for (const fs::path& folder : plan.folders) require_creatable_folder(folder);
-  } else {
-    plan.clean = {request.output};
-    require_format(request.output, request.format);
-    require_rotations(request.inputs.front(), request.output);
-    for (const SideOutput& side : side_outputs(request, plan)) {
-      if (side.requested.empty()) continue;
-      side.files = {side.requested};
-      require_format(side.requested, request.format);
-      if (!is_of_format(side.requested, holds_any_samples))
-        throw ArgumentError(fmt::format("{}: holds rotations, {} needs {}", side.requested.string(),
-                                        side.option, any_extension(holds_any_samples)));
-    }
-    if (!request.report.empty()) {
-      plan.reports = {request.report};
-      require_writable_report(request.report);
-    }
-  }
+  plan.sources = request.files;
+  plan.copies.resize(request.files.size());
+  wants_folder(request) ? plan_in_folders(request, plan) : plan_single(request, plan);
   require_different_files(request, plan);
+  if (request.keep_raw) keep_inputs(request, plan);
+  keep_skeletons(request, plan);
+  if (!request.force) require_no_input(request, plan);
   return plan;
 }
 

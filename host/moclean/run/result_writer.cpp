@@ -21,6 +21,13 @@ std::vector<fs::path> missing_folders(const fs::path& folder) {
   return missing;
 }
 
+AtomicFile copied(const FileCopy& copy) {
+  AtomicFile file(copy.to);
+  file.write(read_file(copy.from));
+  file.close();
+  return file;
+}
+
 }  // namespace
 
 // Delegates, so that the destructor removes what was created before a failure.
@@ -40,9 +47,13 @@ NewFolders::~NewFolders() {
     fs::remove(*folder, ignored);
 }
 
-ResultWriter::ResultWriter(const OutputPlan& plan, int threads, RunLog& log)
-    : plan_(plan), log_(log), folders_(plan.folders), take_seconds_(plan.clean.size()) {
-  const auto count = std::min(static_cast<std::size_t>(threads), plan.clean.size());
+ResultWriter::ResultWriter(const Job& job, RunLog& log)
+    : job_(job),
+      plan_(job.outputs),
+      log_(log),
+      folders_(plan_.folders),
+      take_seconds_(plan_.clean.size()) {
+  const auto count = std::min(static_cast<std::size_t>(job.jobs), plan_.clean.size());
   for (std::size_t t = 0; t < count; ++t) threads_.emplace_back([this] { work(); });
 }
 
@@ -63,11 +74,19 @@ void ResultWriter::finish() {
 }
 
 void ResultWriter::commit() {
-  for (auto& [take, files] : waiting_) {
-    for (AtomicFile& file : files) file.commit();
-    log_.send(TakeWritten{take});
-  }
+  for (auto& [take, files] : waiting_) commit(take, files);
   if (log_.all_or_nothing()) folders_.keep();  // else those that are not empty stay
+}
+
+// The copies are the first: an input is kept before its result replaces it.
+void ResultWriter::commit(std::size_t take, std::vector<AtomicFile>& files) {
+  if (job_.before_commit) {
+    std::vector<CompleteFile> complete;
+    for (const AtomicFile& file : files) complete.push_back({file.target(), file.temporary()});
+    job_.before_commit(take, complete);
+  }
+  for (AtomicFile& file : files) file.commit();
+  log_.send(TakeWritten{take});
 }
 
 // After a failure the takes that wait are dropped all the same: others wait for their memory.
@@ -90,6 +109,8 @@ void ResultWriter::work() {
 std::vector<AtomicFile> ResultWriter::written(SolvedTake& take) {
   const BusyClock::Work work(clock_);
   std::vector<AtomicFile> files;
+  if (!plan_.copies.empty())
+    for (const FileCopy& copy : plan_.copies[take.index]) files.push_back(copied(copy));
   Recording outliers = like(take.clean, std::move(take.outliers));
   files.push_back(write_temporary(plan_.clean[take.index], take.clean));
   if (!plan_.outliers.empty())
@@ -113,8 +134,7 @@ std::vector<AtomicFile> ResultWriter::written(SolvedTake& take) {
 
 void ResultWriter::keep(std::size_t take, std::vector<AtomicFile> files) {
   if (!log_.all_or_nothing()) {
-    for (AtomicFile& file : files) file.commit();
-    log_.send(TakeWritten{take});
+    commit(take, files);
     return;
   }
   const std::lock_guard lock(mutex_);

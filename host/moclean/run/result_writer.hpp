@@ -52,8 +52,8 @@ class NewFolders {
 /// results of a take get their names as soon as they are complete.
 class ResultWriter {
  public:
-  /// `plan` and `log` outlive the writer. Throws FileError if a folder cannot be created.
-  ResultWriter(const OutputPlan& plan, int threads, RunLog& log);
+  /// `job` and `log` outlive the writer. Throws FileError if a folder cannot be created.
+  ResultWriter(const Job& job, RunLog& log);
   ~ResultWriter();
   ResultWriter(const ResultWriter&) = delete;
   ResultWriter& operator=(const ResultWriter&) = delete;
@@ -73,9 +73,11 @@ class ResultWriter {
  private:
   void work();
   std::vector<AtomicFile> written(SolvedTake& take);
+  void commit(std::size_t take, std::vector<AtomicFile>& files);
   void keep(std::size_t take, std::vector<AtomicFile> files);
   void rethrow_failure();
 
+  const Job& job_;
   const OutputPlan& plan_;
   RunLog& log_;
   NewFolders folders_;

@@ -4,24 +4,27 @@
 
 #include "moclean/core/error.hpp"
 #include "moclean/formats/formats.hpp"
+#include "moclean/run/outputs.hpp"
 
 namespace moclean {
 namespace {
 
 namespace fs = std::filesystem;
 
-fs::path truth_in(const fs::path& folder, const fs::path& file) {
-  for (const std::string& kind : extensions(can_read)) {
-    const fs::path candidate = folder / (file.stem() += kind);
-    if (fs::exists(candidate)) return candidate;
-  }
+fs::path truth_in(const fs::path& folder, const fs::path& file, const fs::path& below) {
+  for (const fs::path& place : {folder / below.parent_path(), folder})
+    for (const std::string& kind : extensions(can_read)) {
+      const fs::path candidate = place / (file.stem() += kind);
+      if (fs::exists(candidate)) return candidate;
+    }
   throw FileError(folder, fmt::format("holds no truth of {}: expected {} with {}", file.string(),
                                       file.stem().string(), any_extension(can_read)));
 }
 
 }  // namespace
 
-std::vector<fs::path> truths_of(const fs::path& truth, const std::vector<fs::path>& files) {
+std::vector<fs::path> truths_of(const fs::path& truth, const std::vector<fs::path>& files,
+                                const std::vector<fs::path>& inputs) {
   if (!fs::exists(truth)) throw FileError(truth, "there is no such file or folder");
   if (!fs::is_directory(truth)) {
     if (files.size() > 1)
@@ -31,7 +34,8 @@ std::vector<fs::path> truths_of(const fs::path& truth, const std::vector<fs::pat
     return {truth};
   }
   std::vector<fs::path> truths;
-  for (const fs::path& file : files) truths.push_back(truth_in(truth, file));
+  for (const fs::path& file : files)
+    truths.push_back(truth_in(truth, file, below_its_folder(inputs, file)));
   return truths;
 }
 

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class Validator;
+}
+
+namespace moclean::cli {
+
+/// Validators of option values, whose messages say what is allowed in words.
+
+/// A number above 0.
+CLI::Validator positive_number();
+
+/// A number of at least 0.
+CLI::Validator number_from_zero();
+
+/// A whole number within bounds.
+CLI::Validator whole_number(std::int64_t least, std::int64_t most = INT64_MAX);
+
+/// One of some names; the message of another has the nearest.
+CLI::Validator one_of(std::vector<std::string> names);
+
+}  // namespace moclean::cli
