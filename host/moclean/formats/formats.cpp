@@ -20,7 +20,8 @@ namespace moclean {
 
 std::span<const Format* const> formats() {
   static constexpr std::array<const Format*, 9> all = {
-      &bvh_format, &amc_format, &c3d_format, &trc_format, &csv_format, &tsv_format, &mot_format, &sto_format, &npy_format,
+      &bvh_format, &amc_format, &c3d_format, &trc_format, &csv_format,
+      &tsv_format, &mot_format, &sto_format, &npy_format,
   };
   return all;
 }
