@@ -113,6 +113,17 @@ void write(benchmark::State& state, const fs::path& file, const std::string& ext
   count(state, fs::file_size(written.file));
 }
 
+// Into the text it was read from, every tenth sample changed.
+void write_again(benchmark::State& state, const fs::path& file) {
+  const Written first(read_recording(file), ".csv"), again(read_recording(file), ".csv");
+  Recording recording = read_recording(first.file);
+  for (Index i = 0; i < recording.samples.size(); i += 10) recording.samples.data()[i] += 1;
+  for (auto iteration : state) write_recording(again.file, recording);
+  if (read_recording(again.file).samples != recording.samples)
+    state.SkipWithError("other samples were written");
+  count(state, fs::file_size(again.file));
+}
+
 void add(const std::string& name, const std::function<void(benchmark::State&)>& run) {
   benchmark::RegisterBenchmark(name.c_str(), run)->Unit(benchmark::kMillisecond);
 }
@@ -131,6 +142,8 @@ void add_all() {
     add("write/" + name, [=](auto& state) { write(state, file, extension); });
     add("read/" + name, [=](auto& state) { read_written(state, file, extension); });
   }
+  add("write_again/" + file.stem().string() + ".csv",
+      [=](auto& state) { write_again(state, file); });
 }
 
 }  // namespace

@@ -62,6 +62,8 @@ INSTANTIATE_TEST_SUITE_P(
         NamedPoints{"A x,A y,A z", "A.x,A.y,A.z"}, NamedPoints{"A-X,A-Y,A-Z", "A.x,A.y,A.z"},
         NamedPoints{"x(A),y(A),z(A)", "A.x,A.y,A.z"}, NamedPoints{"A[x],A[y],A[z]", "A.x,A.y,A.z"},
         NamedPoints{"A X (mm),A Y (mm),A Z (mm)", "A.x,A.y,A.z"},
+        NamedPoints{"A/x,A/y,A/z", "A.x,A.y,A.z"}, NamedPoints{"A - x,A - y,A - z", "A.x,A.y,A.z"},
+        NamedPoints{"xHip,yHip,zHip", "Hip.x,Hip.y,Hip.z"},
         NamedPoints{"A_x_mm,A_y_mm,A_z_mm", "A.x,A.y,A.z"},
         NamedPoints{"X.A,Y.A,Z.A", "A.x,A.y,A.z"}, NamedPoints{"x_A,y_A,z_A", "A.x,A.y,A.z"},
         NamedPoints{"X A,Y A,Z A", "A.x,A.y,A.z"},

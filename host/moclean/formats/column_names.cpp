@@ -17,7 +17,7 @@ bool is_one_of(std::string_view word, std::initializer_list<std::string_view> kn
   return std::find(known.begin(), known.end(), word) != known.end();
 }
 
-constexpr std::string_view joining = "._- :";
+constexpr std::string_view joining = "._- :/";
 
 bool joins(char c) { return joining.find(c) != std::string_view::npos; }
 
@@ -130,7 +130,11 @@ std::vector<AxisName> axis_names(std::string_view full_name) {
   const std::string_view name = without_unit(full_name);
   std::vector<AxisName> found;
   const auto add = [&](NameStyle style, char joint, std::string_view point, char letter) {
-    found.push_back({style, joint, std::string(without_blanks(point)), axis_letter(letter)});
+    // Of `hip - x` or `hip, x` the point is `hip`.
+    const std::size_t begin = std::min(point.find_first_not_of("._- :/,"), point.size());
+    const std::size_t end = point.find_last_not_of("._- :/,") + 1;
+    if (begin < end) point = point.substr(begin, end - begin);
+    found.push_back({style, joint, std::string(point), axis_letter(letter)});
   };
   if (name.empty()) return found;
   const std::size_t size = name.size();
@@ -159,21 +163,33 @@ std::vector<AxisName> axis_names(std::string_view full_name) {
   const char before = name[size - 2];
   const bool stands_out =
       is_upper(last) ? is_letter(before) || is_digit(before) : is_upper(before) || is_digit(before);
+  if (axis_letter(first) && !is_upper(first) && is_upper(name[1]))
+    add(NameStyle::glued, '<', name.substr(1), first);
   if (axis_letter(last) && stands_out) add(NameStyle::glued, 0, name.substr(0, size - 1), last);
   return found;
 }
 
 NamedQuantity named_quantity(std::string_view name) {
   const std::string text = squeezed(name);
-  if (is_one_of(text, {"time",         "t",           "times",        "timestamp",
-                       "timestamps",   "timesec",     "timesecs",     "timeseconds",
-                       "times",        "timems",      "timemsec",     "timemilliseconds",
-                       "timeus",       "timens",      "tms",          "tsec",
-                       "seconds",      "secs",        "sec",          "milliseconds",
-                       "ms",           "msec",        "unixtime",     "unixtimestamp",
-                       "epoch",        "epochms",     "timestampms",  "timestamps",
-                       "timestampus",  "timestampns", "elapsed",      "elapsedtime",
-                       "relativetime", "capturetime", "recordingtime"}))
+  if (is_one_of(text, {"time",        "t",
+                       "times",       "timestamp",
+                       "timestamps",  "timesec",
+                       "timesecs",    "timeseconds",
+                       "times",       "timems",
+                       "timemsec",    "timemilliseconds",
+                       "timeus",      "timens",
+                       "tms",         "tsec",
+                       "seconds",     "secs",
+                       "sec",         "milliseconds",
+                       "ms",          "msec",
+                       "unixtime",    "unixtimestamp",
+                       "epoch",       "epochms",
+                       "timestampms", "timestamps",
+                       "timestampus", "timestampns",
+                       "elapsed",     "elapsedtime",
+                       "zeit",        "temps",
+                       "tiempo",      "relativetime",
+                       "capturetime", "recordingtime"}))
     return NamedQuantity::time;
   if (is_one_of(text, {"frame", "frames", "frameindex", "frameidx", "frameid", "framenumber",
                        "framenum", "frameno", "frame#", "framenr", "fnum", "framecount", "fno"}))

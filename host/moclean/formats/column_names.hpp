@@ -10,13 +10,13 @@ namespace moclean {
 /// How a name joins a point and a coordinate, in the order in which readings of names are
 /// preferred.
 enum class NameStyle {
-  suffix,    ///< `hip.x`, `hip_X`, `hip-x`, `hip:X`, `hip x`
+  suffix,    ///< `hip.x`, `hip_X`, `hip-x`, `hip:X`, `hip x`, `hip/x`
   brackets,  ///< `x(hip)`, `hip[x]`
   prefix,    ///< `x.hip`, `X_hip`, `X hip`
   position,  ///< `hip.Xposition`
   numbered,  ///< `x1`, `Y12`
   bare,      ///< `x`
-  glued      ///< `hipX`, `LFHDx`: the letter's case or what stands before it sets it apart
+  glued      ///< `hipX`, `LFHDx`, `xHip`: the letter's case or what stands before it sets it apart
 };
 
 /// One reading of a column's name as a coordinate of a point.

@@ -61,7 +61,7 @@ bool are_numbers(std::string_view line, char separator) {
 // names.
 char separator_between(std::string_view names, std::string_view row) {
   char first = 0;
-  for (const char candidate : {',', ';', '\t'}) {
+  for (const char candidate : {',', ';', '\t', '|'}) {
     const std::size_t count = count_cells(names, candidate);
     if (count < 2) continue;
     if (count == count_cells(row, candidate)) return candidate;

@@ -7,8 +7,8 @@ namespace moclean {
 namespace {
 
 std::uint32_t unit_at(std::string_view bytes, std::size_t place, bool is_little) {
-  const auto first = static_cast<unsigned char>(bytes[place]);
-  const auto second = static_cast<unsigned char>(bytes[place + 1]);
+  const std::uint32_t first = static_cast<unsigned char>(bytes[place]);
+  const std::uint32_t second = static_cast<unsigned char>(bytes[place + 1]);
   return is_little ? first | second << 8U : second | first << 8U;
 }
 
