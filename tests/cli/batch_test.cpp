@@ -1,5 +1,7 @@
 // moclean denoise: folders of takes, failures among them, what is printed and recorded.
 
+#include <array>
+
 #include <gmock/gmock.h>
 
 #include "moclean/formats/formats.hpp"
@@ -244,18 +246,39 @@ TEST(Batch, QuietLeavesWhatChangedMuchAndFailures) {
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("walk.csv: changed much"), HasSubstr("bad.csv:3: ")));
 }
 
-// Six formats, and of three of them a damaged file.
-TEST(Batch, FortyTakesOfWhichThreeAreDamaged) {
-  const TemporaryFolder folder;
-  const std::vector<std::string> kinds = {"csv", "npy", "trc", "c3d", "bvh", "csv"};
+// 37 takes of six formats.
+void write_takes_of_all_kinds(const TemporaryFolder& folder) {
+  const std::array kinds = {"csv", "npy", "trc", "c3d", "bvh", "amc"};
   for (int i = 0; i < 37; ++i) {
-    const std::string& kind = kinds[static_cast<std::size_t>(i) % kinds.size()];
-    const std::string name = fmt::format("in/actor{}/take{:02}.{}", i % 4, i, kind);
-    if (kind == "bvh")
-      folder.write_text(name, std::string(tiny_bvh));
-    else
-      folder.write(name, small_walk(20 + i, static_cast<std::uint64_t>(i + 1)));
+    const std::string kind = kinds[static_cast<std::size_t>(i) % kinds.size()],
+                      stem = fmt::format("in/actor{}/take{:02}.", i % 4, i);
+    if (kind == "bvh") {
+      folder.write_text(stem + kind, std::string(tiny_bvh));
+    } else if (kind == "amc") {
+      folder.write_text(stem + kind, std::string(tiny_amc));
+      folder.write_text(stem + "asf", std::string(tiny_asf));
+    } else {
+      folder.write(stem + kind, small_walk(20 + i, static_cast<std::uint64_t>(i + 1)));
+    }
   }
+}
+
+// What is to become of the files below a folder of takes.
+std::vector<std::string> expected_results(std::vector<std::string> names) {
+  const bool amc = is_of_format("x.amc", can_write);  // else .csv, which needs no .asf
+  std::erase_if(names, [&](const std::string& name) {
+    return name.find("bad.") != name.npos || (!amc && name.ends_with(".asf"));
+  });
+  if (!amc)
+    for (std::string& name : names)
+      if (name.ends_with(".amc")) name.replace(name.size() - 3, 3, "csv");
+  std::ranges::sort(names);
+  return names;
+}
+
+TEST(Batch, FortyTakesOfSixFormatsOfWhichThreeAreDamaged) {
+  const TemporaryFolder folder;
+  write_takes_of_all_kinds(folder);
   const std::string whole = content(folder / "in/actor3/take03.c3d");
   for (const auto& [name, text] :
        {std::pair<std::string, std::string>{"in/actor0/bad.csv", damaged},
@@ -266,13 +289,12 @@ TEST(Batch, FortyTakesOfWhichThreeAreDamaged) {
   const Outcome outcome = denoise_quickly({folder / "in", "-o", folder / "out"});
 
   EXPECT_EQ(outcome.exit_code, 1);
-  std::vector<std::string> expected = files_below(folder, "in");
-  std::erase_if(expected, [](const std::string& name) { return name.find("bad.") != name.npos; });
   std::vector<std::string> results = files_below(folder, "out");
   std::erase(results, "moclean.manifest.jsonl");
-  EXPECT_EQ(results, expected);
+  EXPECT_EQ(results, expected_results(files_below(folder, "in")));
+  std::erase_if(results, [](const std::string& name) { return name.ends_with(".asf"); });
   for (const std::string& name : results)
-    EXPECT_GT(read_recording(folder / ("out/" + name)).frames(), 0);
+    EXPECT_GT(read_recording(folder / ("out/" + name)).frames(), 0) << name;
   for (const char* name : {"actor0/bad.csv:3: ", "actor1/bad.bvh", "bad.c3d: "})
     EXPECT_THAT(outcome.err, HasSubstr(name));
   EXPECT_THAT(outcome.err, EndsWith("3 of 40 takes failed, see above\n"));

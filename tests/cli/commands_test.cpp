@@ -18,6 +18,7 @@ using ::testing::ElementsAre;
 using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using ::testing::Not;
 
 TEST(Commands, HelpOfEveryCommandEndsWithAnExample) {
   for (const std::string command :
@@ -71,6 +72,22 @@ TEST(Commands, UsageErrorsExitWith2AndPointToHelp) {
     EXPECT_THAT(outcome.err, ::testing::StartsWith("moclean: "));
     EXPECT_THAT(outcome.err, HasSubstr("--help)"));
   }
+}
+
+TEST(Commands, MistypedNamesGetTheNearest) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> wrong = {
+      {{"denose", "a.bvh"}, "unknown command denose; did you mean 'denoise'?"},
+      {{"info", "a.bvh", "--jsno"}, "unknown option --jsno; did you mean '--json'?"},
+      {{"experiment", "tabel2"}, "unknown command tabel2; did you mean 'table2'?"},
+      {{"experiment", "grid", "a.toml", "--seed=3"}, "did you mean '--seeds'?"},
+      {{"corrupt", "a.bvh", "--nose", "x"}, "unknown option --nose; did you mean '--noise'?"}};
+  for (const auto& [arguments, message] : wrong) {
+    const Outcome outcome = run(arguments);
+
+    EXPECT_EQ(outcome.exit_code, 2);
+    EXPECT_THAT(outcome.err, HasSubstr(message));
+  }
+  EXPECT_THAT(run({"info", "a.bvh", "--colour"}).err, Not(HasSubstr("did you mean")));
 }
 
 TEST(Corrupt, SameSeedGivesTheSameFile) {

@@ -163,6 +163,22 @@ TEST(Progress, IsShownOnATerminalAndClearedAtTheEnd) {
   EXPECT_THAT(outcome.err, ::testing::EndsWith("\r\033[K"));
 }
 
+TEST(Progress, SaysThatKernelsAreCompiledOnTheFirstUseOfADevice) {
+  if (run({"devices", "--json"}).json().empty()) GTEST_SKIP() << "no OpenCL device";
+  const TemporaryFolder folder;
+  const std::vector<std::string> arguments = {
+      "denoise",  folder.write("walk.npy", synthetic_walk(100)),
+      "-o",       folder / "clean.npy",
+      "--method", "tsvd"};
+  const Start fresh{.device = "", .cache = folder / "cache", .terminal = true};
+
+  Program first(arguments, fresh);
+  EXPECT_TRUE(first.shows("solving: compiling kernels, first use on this device ..."));
+  EXPECT_EQ(first.wait().exit_code, 0);
+
+  EXPECT_THAT(run(arguments, fresh).err, Not(HasSubstr("compiling")));
+}
+
 TEST(Progress, IsAbsentFromAFileAndWithQuiet) {
   const TemporaryFolder folder;
   std::vector<std::string> arguments = long_run(folder, 200, "200");

@@ -31,10 +31,10 @@ class EarlierResults {
     for (const fs::path& place :
          {options.output, options.outliers, options.mask, options.sigma, options.report})
       if (!place.empty()) places_.insert(fs::weakly_canonical(place / "").parent_path());
-    for (const fs::path& input : options.inputs) {
-      inputs_.insert(fs::weakly_canonical(input));
+    for (const fs::path& input : options.inputs)
+      if (fs::is_directory(input)) inputs_.insert(fs::weakly_canonical(input));
+    for (const fs::path& input : options.inputs)
       if (fs::is_directory(input)) learn(input);
-    }
   }
 
   bool operator()(const fs::path& found) {
@@ -196,7 +196,8 @@ BatchPlan plan_batch(const DenoiseLayers& layers, const DenoiseOptions& options)
   EarlierResults earlier(options);
   plan.files = expand_folders(options.inputs, [&](const fs::path& path) { return earlier(path); });
   std::vector<fs::path> below;
-  for (const fs::path& file : plan.files) below.push_back(below_its_folder(options.inputs, file));
+  const InputFolders folders(options.inputs);
+  for (const fs::path& file : plan.files) below.push_back(folders.below(file));
   find_settings(layers, below, plan);
   plan.warnings = layers.unused(below);
   if (!options.truth.empty()) plan.truths = truths_of(options.truth, plan.files, options.inputs);

@@ -38,6 +38,11 @@ std::string hash_of(const fs::path& file) {
   return stream.bad() ? "" : fmt::format("{:016x}", hash.value());
 }
 
+// Whatever links lead to the folder it is in.
+fs::path real_place(const fs::path& file) {
+  return fs::weakly_canonical(file.parent_path()) / file.filename();
+}
+
 fs::path absolute_plain(const fs::path& path) { return fs::absolute(path).lexically_normal(); }
 
 bool is_manifest_line(const Json& line) {
@@ -49,6 +54,10 @@ bool is_manifest_line(const Json& line) {
 }  // namespace
 
 Manifest::Manifest(fs::path root) : root_(absolute_plain(root / "")), file_(root / manifest_name) {
+  read();
+}
+
+void Manifest::read() {
   std::error_code error;
   if (!fs::is_regular_file(file_, error)) return;
   const std::string text = read_file(file_);
@@ -118,8 +127,9 @@ void Manifest::add(const ManifestTake& take, const std::vector<CompleteFile>& fi
 }
 
 void Manifest::tidy() {
-  if (lines_.empty()) return;
   log_.reset();
+  read();
+  if (lines_.empty()) return;
   AtomicFile file(file_);
   for (const auto& [output, line] : lines_) file.write(line_text(line) + "\n");
   file.commit();
@@ -134,13 +144,14 @@ std::vector<fs::path> Manifest::sides() const {
 }
 
 std::vector<fs::path> Manifest::results_below(const fs::path& inputs) const {
-  const fs::path folder = absolute_plain(inputs / "");
+  const fs::path folder = fs::weakly_canonical(inputs);
   std::vector<fs::path> files;
   for (const auto& [output, line] : lines_) {
     const fs::path result = (root_ / output).lexically_normal();
-    const fs::path input = line["input"].get<std::string>();
+    const fs::path input = real_place(line["input"].get<std::string>());
     const fs::path below = input.lexically_relative(folder);
-    if (input != result && !below.empty() && *below.begin() != "..") files.push_back(result);
+    if (input != real_place(result) && !below.empty() && *below.begin() != "..")
+      files.push_back(result);
   }
   return files;
 }

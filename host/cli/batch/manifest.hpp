@@ -46,7 +46,8 @@ class Manifest {
   /// FileError.
   void add(const ManifestTake& take, const std::vector<CompleteFile>& files);
 
-  /// The last line about every result, sorted by its name, in place of the lines as they came.
+  /// The last line about every result, sorted by its name, in place of the lines as they came, also
+  /// from other runs. No other run may be at work in the folder.
   void tidy();
 
   bool empty() const { return lines_.empty(); }
@@ -57,6 +58,7 @@ class Manifest {
   std::vector<std::filesystem::path> sides() const;
 
  private:
+  void read();
   std::string name_of(const std::filesystem::path& file) const;
   const Json* line_of(const std::string& output) const;
 

@@ -21,13 +21,13 @@ void replace_all(std::string& text, const std::string& from, const std::string& 
     text.replace(at, from.size(), to);
 }
 
-void spool_standard_input(const fs::path& file) {
-  AtomicFile target(file);
+std::string standard_input() {
+  std::string bytes;
   char chunk[1 << 16];
   for (std::size_t count; (count = std::fread(chunk, 1, sizeof chunk, stdin)) > 0;)
-    target.write({chunk, count});
+    bytes.append(chunk, count);
   if (std::ferror(stdin)) throw FileError("standard input", "cannot be read to its end");
-  target.commit();
+  return bytes;
 }
 
 void require_alone(const DenoiseOptions& options) {
@@ -54,6 +54,7 @@ StandardStreams::StandardStreams(DenoiseOptions& options) : StandardStreams() {
   if (writes && (options.inputs.size() > 1 || fs::is_directory(options.inputs.front())))
     throw ArgumentError("- as OUTPUT takes the result of one input");
   if (!reads && !writes) return;
+  const std::string bytes = reads ? standard_input() : "";  // before anything is made: Ctrl-C
   make_folder();
   if (writes) {
     if (options.format.empty()) options.format = input_format;
@@ -62,7 +63,9 @@ StandardStreams::StandardStreams(DenoiseOptions& options) : StandardStreams() {
   }
   if (reads) {
     input_ = folder_ / ("input." + input_format);
-    spool_standard_input(input_);
+    AtomicFile file(input_);
+    file.write(bytes);
+    file.commit();
     options.inputs = {input_};
     options.input_format.clear();
   }

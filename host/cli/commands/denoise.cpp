@@ -212,25 +212,17 @@ RunReport run_shown(const BatchPlan& plan, const StandardStreams& streams, Manif
   }
 }
 
-ExitCode run_planned(const DenoiseLayers& layers, const DenoiseOptions& options,
-                     const StandardStreams& streams) {
-  if (needs_backend(options.chain) && options.backend == "opencl") require_driver();
-  const Interrupt interrupt;  // before the threads of the OpenCL driver
-  if (!options.report.empty()) require_report();
-  BatchPlan plan = plan_batch(layers, options);
-  if (options.resume) leave_out_done(Manifest(plan.outputs.root), plan);
-  for (const std::string& warning : plan.warnings) warn("{}", warning);
-  for (const std::string& note : plan.outputs.notes) warn("{}", note);
-  if (options.dry_run) {
-    say("{}", streams.named(dry_run_text(plan)));
-    return ExitCode::done;
-  }
-  for (const fs::path& file : {options.json, options.lines})
-    if (!file.empty() && file != "-") require_writable(file);
-
-  const bool on_device = std::ranges::any_of(plan.groups(), [&](const auto& takes) {
-    return needs_backend(plan.options_of(takes[0]).chain);
+bool runs_on_device(const BatchPlan& plan) {
+  return std::ranges::any_of(plan.groups(), [&](const auto& takes) {
+    return needs_backend(plan.options_of(takes.front()).chain);
   });
+}
+
+ExitCode run_planned(const BatchPlan& plan, const StandardStreams& streams) {
+  const DenoiseOptions& options = plan.common();
+  const bool on_device = runs_on_device(plan);
+  if (on_device && options.backend == "opencl") require_driver();
+  const Interrupt interrupt;  // before the threads of the OpenCL driver
   OpenedBackend opened =
       open_backend(options, on_device, options.profile ? Profiling::on : Profiling::off);
   ResultsFolder folder(plan);
@@ -242,7 +234,7 @@ ExitCode run_planned(const DenoiseLayers& layers, const DenoiseOptions& options,
   streams.send();
   lines.check();
 
-  if (options.profile)
+  if (options.profile && opened.device)
     opened.report.profile = profile_of(*opened.device, options, report.seconds.solve);
   for (TakeReport& take : report.takes) {
     take.file = streams.named(take.file.string());
@@ -253,12 +245,28 @@ ExitCode run_planned(const DenoiseLayers& layers, const DenoiseOptions& options,
   return tell_problems(report);
 }
 
+ExitCode plan_and_run(const DenoiseLayers& layers, const DenoiseOptions& options,
+                      const StandardStreams& streams) {
+  if (!options.report.empty()) require_report();
+  BatchPlan plan = plan_batch(layers, options);
+  if (options.resume) leave_out_done(Manifest(plan.outputs.root), plan);
+  for (const std::string& warning : plan.warnings) warn("{}", warning);
+  for (const std::string& note : plan.outputs.notes) warn("{}", note);
+  if (options.dry_run) {
+    say("{}", streams.named(dry_run_text(plan)));
+    return ExitCode::done;
+  }
+  for (const fs::path& file : {options.json, options.lines})
+    if (!file.empty() && file != "-") require_writable(file);
+  return run_planned(plan, streams);
+}
+
 ExitCode run(const DenoiseLayers& layers) {
   DenoiseOptions options = layers.options();
   if (options.limits_memory) return_freed_memory();  // whoever sets a limit means it
   const StandardStreams streams(options);
   try {
-    return run_planned(layers, options, streams);
+    return plan_and_run(layers, options, streams);
   } catch (const ArgumentError& error) {
     throw ArgumentError(streams.named(error.what()));
   } catch (const Cancelled&) {

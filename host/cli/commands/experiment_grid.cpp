@@ -11,6 +11,7 @@
 #include "moclean/formats/file.hpp"
 #include "moclean/run/outputs.hpp"
 
+#include "cli/backend/driver_check.hpp"
 #include "cli/backend/open_backend.hpp"
 #include "cli/commands/experiment_run.hpp"
 #include "cli/interrupt.hpp"
@@ -202,6 +203,7 @@ void make_folder(const fs::path& folder) {
 
 ExitCode run_grid(GridOptions options) {
   prepare(options);
+  if (options.backend == "opencl") require_driver();
   const Interrupt interrupt;  // before the threads of the OpenCL driver
   Grid grid = read(options);
   for (const fs::path& file : grid.missing)

@@ -7,6 +7,7 @@
 #include "moclean/experiment/run_cells.hpp"
 #include "moclean/run/outputs.hpp"
 
+#include "cli/backend/driver_check.hpp"
 #include "cli/backend/open_backend.hpp"
 #include "cli/commands/experiment_run.hpp"
 #include "cli/interrupt.hpp"
@@ -119,6 +120,7 @@ ExitCode warn_of_unconverged(Index segments) {
 
 ExitCode run_table(TableOptions options) {
   complete_backend(options);
+  if (options.backend == "opencl") require_driver();
   const Interrupt interrupt;  // before the threads of the OpenCL driver
   if (!options.report.empty()) require_report();
   if (!options.report.empty()) require_writable(options.report);

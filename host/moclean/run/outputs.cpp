@@ -1,9 +1,9 @@
 #include "moclean/run/outputs.hpp"
 
-#include <algorithm>
 #include <array>
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -94,13 +94,14 @@ void require_writable_report(const fs::path& file) {
 
 std::vector<fs::path> files_in(const fs::path& folder, const OutputRequest& request,
                                FormatTrait trait) {
+  const InputFolders folders(request.inputs);
   std::vector<fs::path> results;
   for (std::size_t i = 0; i < request.files.size(); ++i) {
     const fs::path& input = request.files[i];
     const std::string kind = extension_of_result(input, format_of_file(request, i), trait);
     // `Walk.BVH` stays `Walk.BVH`.
     const bool same = kind == extension(input);
-    const fs::path below = below_its_folder(request.inputs, input);
+    const fs::path below = folders.below(input);
     results.push_back(folder / (same ? below : with_extension(below, kind)));
   }
   return results;
@@ -232,10 +233,11 @@ void note_other_formats(const OutputRequest& request, OutputPlan& plan) {
                                      count, count == 1 ? "s" : "", csv_format.extension));
 }
 
-void add_folders(const std::vector<fs::path>& files, std::vector<fs::path>& folders) {
-  for (const fs::path& file : files)
-    if (std::ranges::find(folders, file.parent_path()) == folders.end())
-      folders.push_back(file.parent_path());
+std::set<fs::path> folders_of(const OutputPlan& plan) {
+  std::set<fs::path> folders;
+  for (const auto* files : {&plan.clean, &plan.outliers, &plan.masks, &plan.sigmas, &plan.reports})
+    for (const fs::path& file : *files) folders.insert(file.parent_path());
+  return folders;
 }
 
 void plan_in_folders(const OutputRequest& request, OutputPlan& plan) {
@@ -250,15 +252,14 @@ void plan_in_folders(const OutputRequest& request, OutputPlan& plan) {
     roots.push_back(side.requested);
   }
   if (!request.report.empty()) {
+    const InputFolders folders(request.inputs);
     for (const fs::path& file : request.files)
-      plan.reports.push_back(request.report /
-                             with_extension(below_its_folder(request.inputs, file), ".html"));
+      plan.reports.push_back(request.report / with_extension(folders.below(file), ".html"));
     roots.push_back(request.report);
   }
   for (const fs::path& folder : roots) require_creatable_folder(folder);
   plan.folders = roots;
-  for (const auto* files : {&plan.clean, &plan.outliers, &plan.masks, &plan.sigmas, &plan.reports})
-    add_folders(*files, plan.folders);
+  for (const fs::path& folder : folders_of(plan)) plan.folders.push_back(folder);
   note_other_formats(request, plan);
 }
 
@@ -281,11 +282,15 @@ void plan_single(const OutputRequest& request, OutputPlan& plan) {
 
 }  // namespace
 
-fs::path below_its_folder(const std::vector<fs::path>& inputs, const fs::path& file) {
+InputFolders::InputFolders(const std::vector<fs::path>& inputs) {
+  for (const fs::path& input : inputs)
+    if (fs::is_directory(input)) folders_.push_back((input / "").lexically_normal());
+}
+
+fs::path InputFolders::below(const fs::path& file) const {
   const fs::path plain = file.lexically_normal();
-  for (const fs::path& input : inputs) {
-    if (!fs::is_directory(input)) continue;
-    const fs::path below = plain.lexically_relative((input / "").lexically_normal());
+  for (const fs::path& folder : folders_) {
+    const fs::path below = plain.lexically_relative(folder);
     if (!below.empty() && *below.begin() != ".." && below != ".") return below;
   }
   return file.filename();

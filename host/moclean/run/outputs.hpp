@@ -63,10 +63,18 @@ struct OutputRequest {
 /// result in its place; FileError for a place that cannot be written.
 OutputPlan plan_outputs(const OutputRequest& request);
 
-/// The path of a file below the first of the folders among `inputs` that it is in; its name if it
-/// was given itself.
-std::filesystem::path below_its_folder(const std::vector<std::filesystem::path>& inputs,
-                                       const std::filesystem::path& file);
+/// The folders among the inputs of a run.
+class InputFolders {
+ public:
+  explicit InputFolders(const std::vector<std::filesystem::path>& inputs);
+
+  /// The path of a file below the first of the folders that it is in; its name if it was given
+  /// itself.
+  std::filesystem::path below(const std::filesystem::path& file) const;
+
+ private:
+  std::vector<std::filesystem::path> folders_;
+};
 
 /// Throws ArgumentError unless the file's extension is of a format that can be written, and
 /// FileError unless its folder exists and can be written.

@@ -33,9 +33,9 @@ std::vector<fs::path> truths_of(const fs::path& truth, const std::vector<fs::pat
           truth.string(), files.size()));
     return {truth};
   }
+  const InputFolders folders(inputs);
   std::vector<fs::path> truths;
-  for (const fs::path& file : files)
-    truths.push_back(truth_in(truth, file, below_its_folder(inputs, file)));
+  for (const fs::path& file : files) truths.push_back(truth_in(truth, file, folders.below(file)));
   return truths;
 }
 
