@@ -247,6 +247,16 @@ TEST(Table, RefusesRowsOfOtherLengths) {
                  "decimal mark, separate by ; or tab");
 }
 
+TEST(Table, OfAHundredThousandQuotesOrEqualNamesTakesNoLong) {
+  expect_failure("a,b\n" + std::string(200000, '"') + "\n", "tiny.csv:2: expected a number");
+
+  std::string names = "NO_OF_FRAMES\t1\nMARKER_NAMES", row;
+  for (int i = 0; i < 50000; ++i) names += "\ta", row += i == 0 ? "1\t2\t3" : "\t1\t2\t3";
+  const Recording recording = table(names + "\n" + row + "\n");
+
+  EXPECT_EQ(recording.columns.back(), "a_50000.z");
+}
+
 TEST(Table, TellsAPointFromACommaInAnyRow) {
   EXPECT_EQ(table("a;b\n1;2\n3;4,5\n").samples(1, 1), 4.5);
   EXPECT_EQ(table("a;b\n1;2\n3;4.5\n").samples(1, 1), 4.5);
