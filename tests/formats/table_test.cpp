@@ -38,6 +38,12 @@ void expect_failure(const std::string& text, const std::string& message,
   EXPECT_THAT([&] { table(text, options); }, ThrowsMessage<FileError>(HasSubstr(message))) << text;
 }
 
+std::string repeated(std::string_view text, int times) {
+  std::string all;
+  for (; times > 0; --times) all += text;
+  return all;
+}
+
 std::string utf16(std::string_view ascii, bool is_little) {
   std::string bytes;
   for (const char c : ascii) bytes += is_little ? std::string{c, '\0'} : std::string{'\0', c};
@@ -261,6 +267,9 @@ TEST(Table, TellsAPointFromACommaInAnyRow) {
   EXPECT_EQ(table("a;b\n1;2\n3;4,5\n").samples(1, 1), 4.5);
   EXPECT_EQ(table("a;b\n1;2\n3;4.5\n").samples(1, 1), 4.5);
   expect_failure("a;b\n1.5;2\n3;4,5\n", "tiny.csv:3: expected a decimal point, as in other cells");
+  expect_failure("a;b\n1,5;2\n" + repeated("1;2\n", 50) + "3;4.5\n",
+                 "tiny.csv:53: expected a decimal comma, as in other cells, found '4.5'");
+  EXPECT_EQ(table("A.x;A.y;version\n1,5;2;1.25\n").samples(0, 0), 1.5);
 }
 
 TEST(Table, TakesTheRateFromTimesOfAnyUnit) {

@@ -90,6 +90,8 @@ class PlainHead {
     shape_.roles.names = names_;
     shape_.roles = recognise_columns(names_, first_values(table_.text, shape_, names_.size()));
     units();
+    const TableSurvey survey = survey_rows(table_.text, shape_, 32);
+    if (survey.with_comma > 0 && survey.with_point == 0) shape_.decimal = ',';
     return std::move(shape_);
   }
 

@@ -90,11 +90,13 @@ class TableReader {
 
   bool adapt(TableShape& shape, const UnreadableCell& cell) const {
     const TableSurvey survey = survey_rows(text(), shape);
-    if (survey.with_comma > 0 && survey.with_point > 0 && has_comma(cell.text))
-      throw FileError(
-          file_, cell.line,
-          fmt::format("expected a decimal point, as in other cells, found {}", excerpt(cell.text)));
-    bool is_changed = survey.with_comma > 0 && shape.decimal == '.';
+    const bool is_point = shape.decimal == '.';
+    const bool has_other = cell.text.find(is_point ? ',' : '.') != std::string::npos;
+    if (survey.with_comma > 0 && survey.with_point > 0 && has_other)
+      throw FileError(file_, cell.line,
+                      fmt::format("expected a decimal {}, as in other cells, found {}",
+                                  is_point ? "point" : "comma", excerpt(cell.text)));
+    bool is_changed = survey.with_comma > 0 && is_point;
     if (is_changed) shape.decimal = ',';
     if (std::ranges::all_of(survey.numbers, [](std::size_t count) { return count == 0; }))
       return false;
@@ -110,8 +112,6 @@ class TableReader {
     }
     return is_changed;
   }
-
-  static bool has_comma(std::string_view cell) { return cell.find(',') != cell.npos; }
 
   [[noreturn]] void fail_number(const TableShape& shape, const UnreadableCell& cell) const {
     throw FileError(file_, cell.line,
