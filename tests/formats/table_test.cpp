@@ -263,6 +263,18 @@ TEST(Table, OfAHundredThousandQuotesOrEqualNamesTakesNoLong) {
   EXPECT_EQ(recording.columns.back(), "a_50000.z");
 }
 
+TEST(Table, TakesSeparatorsAloneAtItsEndForNoFrames) {
+  const std::string text = "time,A.x,A.y\r\n0,1,2\r\n1,,\r\n,,\r\n,,\r\n\r\n";
+  const Recording recording = table(text);
+
+  EXPECT_EQ(recording.frames(), 2);
+  EXPECT_THAT(recording.notes.warnings,
+              testing::Contains("2 lines of separators alone at the end, no frames"));
+  EXPECT_EQ(written_again(recording), text);
+  EXPECT_EQ(table("a,b\n,\n,\n").frames(), 2);
+  EXPECT_EQ(table("a,b\n,\n1,2\n").frames(), 2);
+}
+
 TEST(Table, TellsAPointFromACommaInAnyRow) {
   EXPECT_EQ(table("a;b\n1;2\n3;4,5\n").samples(1, 1), 4.5);
   EXPECT_EQ(table("a;b\n1;2\n3;4.5\n").samples(1, 1), 4.5);
