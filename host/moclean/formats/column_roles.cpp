@@ -18,15 +18,16 @@ namespace moclean {
 namespace {
 
 bool is_empty(const Matrix& rows, std::size_t column) {
-  return rows.col(static_cast<Index>(column)).array().isNaN().all();
+  return rows.rows() == 0 || rows.col(static_cast<Index>(column)).array().isNaN().all();
 }
 
 // Whole numbers, each above the one before: frames may have been left out.
 bool counts(const Matrix& rows, std::size_t column) {
+  if (rows.rows() < 2) return false;
   const auto values = rows.col(static_cast<Index>(column));
   for (Index r = 0; r < rows.rows(); ++r)
     if (values[r] != std::floor(values[r]) || (r > 0 && !(values[r] > values[r - 1]))) return false;
-  return rows.rows() > 1;
+  return true;
 }
 
 // Columns that one reading of names makes a point.
