@@ -38,6 +38,12 @@ void expect_failure(const std::string& text, const std::string& message,
   EXPECT_THAT([&] { table(text, options); }, ThrowsMessage<FileError>(HasSubstr(message))) << text;
 }
 
+std::string repeated(std::string_view text, int times) {
+  std::string all;
+  for (; times > 0; --times) all += text;
+  return all;
+}
+
 std::string utf16(std::string_view ascii, bool is_little) {
   std::string bytes;
   for (const char c : ascii) bytes += is_little ? std::string{c, '\0'} : std::string{'\0', c};
@@ -247,10 +253,35 @@ TEST(Table, RefusesRowsOfOtherLengths) {
                  "decimal mark, separate by ; or tab");
 }
 
+TEST(Table, OfAHundredThousandQuotesOrEqualNamesTakesNoLong) {
+  expect_failure("a,b\n" + std::string(200000, '"') + "\n", "tiny.csv:2: expected a number");
+
+  std::string names = "NO_OF_FRAMES\t1\nMARKER_NAMES", row;
+  for (int i = 0; i < 50000; ++i) names += "\ta", row += i == 0 ? "1\t2\t3" : "\t1\t2\t3";
+  const Recording recording = table(names + "\n" + row + "\n");
+
+  EXPECT_EQ(recording.columns.back(), "a_50000.z");
+}
+
+TEST(Table, TakesSeparatorsAloneAtItsEndForNoFrames) {
+  const std::string text = "time,A.x,A.y\r\n0,1,2\r\n1,,\r\n,,\r\n,,\r\n\r\n";
+  const Recording recording = table(text);
+
+  EXPECT_EQ(recording.frames(), 2);
+  EXPECT_THAT(recording.notes.warnings,
+              testing::Contains("2 lines of separators alone at the end, no frames"));
+  EXPECT_EQ(written_again(recording), text);
+  EXPECT_EQ(table("a,b\n,\n,\n").frames(), 2);
+  EXPECT_EQ(table("a,b\n,\n1,2\n").frames(), 2);
+}
+
 TEST(Table, TellsAPointFromACommaInAnyRow) {
   EXPECT_EQ(table("a;b\n1;2\n3;4,5\n").samples(1, 1), 4.5);
   EXPECT_EQ(table("a;b\n1;2\n3;4.5\n").samples(1, 1), 4.5);
   expect_failure("a;b\n1.5;2\n3;4,5\n", "tiny.csv:3: expected a decimal point, as in other cells");
+  expect_failure("a;b\n1,5;2\n" + repeated("1;2\n", 50) + "3;4.5\n",
+                 "tiny.csv:53: expected a decimal comma, as in other cells, found '4.5'");
+  EXPECT_EQ(table("A.x;A.y;version\n1,5;2;1.25\n").samples(0, 0), 1.5);
 }
 
 TEST(Table, TakesTheRateFromTimesOfAnyUnit) {

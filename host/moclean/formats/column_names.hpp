@@ -1,8 +1,10 @@
 #pragma once
 
-#include <cstddef>
+#include <algorithm>
 #include <string>
 #include <string_view>
+#include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 namespace moclean {
@@ -61,6 +63,22 @@ double seconds_per_unit(std::string_view name);
 /// Points, in lower case, of which a column may say how sure they are: `hip` of `Hip_likelihood`,
 /// `hip.score`, `confidence hip`, `hipScore`, `1` of `v1`; the empty one of a bare `likelihood`.
 std::vector<std::string> points_judged_by(std::string_view name);
+
+/// Gives names that come again a number: `hip`, `hip_2`, `hip_3`.
+class DistinctNames {
+ public:
+  std::string operator()(const std::string& name) {
+    int& count = counts_[name];
+    std::string distinct = name;
+    for (count = std::max(count, 1); !used_.insert(distinct).second; ++count)
+      distinct = name + "_" + std::to_string(count + 1);
+    return distinct;
+  }
+
+ private:
+  std::unordered_map<std::string, int> counts_;  // of numbers that were tried
+  std::unordered_set<std::string> used_;
+};
 
 /// Lower case of ASCII.
 std::string in_lower_case(std::string_view text);

@@ -18,15 +18,16 @@ namespace moclean {
 namespace {
 
 bool is_empty(const Matrix& rows, std::size_t column) {
-  return rows.col(static_cast<Index>(column)).array().isNaN().all();
+  return rows.rows() == 0 || rows.col(static_cast<Index>(column)).array().isNaN().all();
 }
 
 // Whole numbers, each above the one before: frames may have been left out.
 bool counts(const Matrix& rows, std::size_t column) {
+  if (rows.rows() < 2) return false;
   const auto values = rows.col(static_cast<Index>(column));
   for (Index r = 0; r < rows.rows(); ++r)
     if (values[r] != std::floor(values[r]) || (r > 0 && !(values[r] > values[r - 1]))) return false;
-  return rows.rows() > 1;
+  return true;
 }
 
 // Columns that one reading of names makes a point.
@@ -64,6 +65,7 @@ class RoleFinder {
     found_.names = names;
     found_.roles.assign(names.size(), ColumnRole::plain);
     is_taken_.assign(names.size(), false);
+    for (const std::string& name : names) quantities_.push_back(named_quantity(name));
   }
 
   ColumnRoles find() {
@@ -84,7 +86,7 @@ class RoleFinder {
   void times_and_indices() {
     bool has_time = false;
     for (std::size_t c = 0; c < names_.size(); ++c) {
-      switch (named_quantity(names_[c])) {
+      switch (quantities_[c]) {
         case NamedQuantity::time:
           take(c, has_time ? ColumnRole::other : ColumnRole::time);
           has_time = true;
@@ -152,16 +154,14 @@ class RoleFinder {
   void name_points() {
     const bool has_bare =
         std::ranges::any_of(found_.points, &std::string::empty, &ColumnPoint::name);
-    std::set<std::string> used;
+    DistinctNames distinct;
     std::size_t number = 0;
     for (ColumnPoint& point : found_.points) {
       stems_.push_back(in_lower_case(point.name));
       ++number;
       const bool is_number = point.name.find_first_not_of("0123456789") == std::string::npos;
       if (is_number) point.name = has_bare ? fmt::format("point{}", number) : "point" + point.name;
-      const std::string name = point.name;
-      for (int i = 2; !used.insert(point.name).second; ++i)
-        point.name = fmt::format("{}_{}", name, i);
+      point.name = distinct(point.name);
     }
   }
 
@@ -178,7 +178,7 @@ class RoleFinder {
         take(c, ColumnRole::confidence);
         break;
       }
-      if (!is_taken_[c] && named_quantity(names_[c]) == NamedQuantity::confidence)
+      if (!is_taken_[c] && quantities_[c] == NamedQuantity::confidence)
         take(c, ColumnRole::confidence);
     }
   }
@@ -191,14 +191,15 @@ class RoleFinder {
       if (!has_points && !is_nothing)
         found_.roles[c] = ColumnRole::plain;
       else if (found_.roles[c] != ColumnRole::angle)
-        found_.roles[c] = named_quantity(names_[c]) == NamedQuantity::angle ? ColumnRole::angle
-                                                                            : ColumnRole::other;
+        found_.roles[c] =
+            quantities_[c] == NamedQuantity::angle ? ColumnRole::angle : ColumnRole::other;
     }
   }
 
   const std::vector<std::string>& names_;
   const Matrix& first_rows_;
   ColumnRoles found_;
+  std::vector<NamedQuantity> quantities_;  // that names tell of
   std::vector<bool> is_taken_;
   std::set<std::size_t> left_out_;
   std::vector<std::string> stems_;  // of the points, in lower case

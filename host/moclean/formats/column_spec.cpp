@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -131,11 +130,8 @@ class PointCollector {
           fmt::format("--columns: point {} lacks its {}", points_.size() + 1, x ? 'y' : 'x'));
     ColumnPoint point{point_of(names_[*x], 'x'), {*x, *y}};
     if (z) point.columns.push_back(*z);
-    const std::string name =
-        point.name.empty() ? fmt::format("point{}", points_.size() + 1) : point.name;
-    point.name = name;
-    for (int i = 2; !used_.insert(point.name).second; ++i)
-      point.name = fmt::format("{}_{}", name, i);
+    if (point.name.empty()) point.name = fmt::format("point{}", points_.size() + 1);
+    point.name = distinct_(point.name);
     points_.push_back(std::move(point));
     open_ = {};
   }
@@ -143,7 +139,7 @@ class PointCollector {
   const std::vector<std::string>& names_;
   std::array<std::optional<std::size_t>, 3> open_;
   std::vector<ColumnPoint> points_;
-  std::set<std::string> used_;
+  DistinctNames distinct_;
 };
 
 ColumnRole role_of(char letter) {

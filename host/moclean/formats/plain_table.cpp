@@ -90,6 +90,8 @@ class PlainHead {
     shape_.roles.names = names_;
     shape_.roles = recognise_columns(names_, first_values(table_.text, shape_, names_.size()));
     units();
+    const TableSurvey survey = survey_rows(table_.text, shape_, 32);
+    if (survey.with_comma > 0 && survey.with_point == 0) shape_.decimal = ',';
     return std::move(shape_);
   }
 
@@ -307,9 +309,10 @@ std::size_t named_columns(const std::vector<std::string>& names) {
 }
 
 Matrix first_values(std::string_view text, const TableShape& shape, std::size_t columns) {
-  constexpr Index most = 32;
-  Matrix values =
-      Matrix::Constant(most, static_cast<Index>(columns), std::numeric_limits<double>::quiet_NaN());
+  constexpr Index most_rows = 32, most_values = 1 << 20;
+  const auto width = static_cast<Index>(columns);
+  const Index most = std::clamp<Index>(most_values / std::max<Index>(width, 1), 2, most_rows);
+  Matrix values = Matrix::Constant(most, width, std::numeric_limits<double>::quiet_NaN());
   Index row = 0;
   for (TextLines lines(text.substr(0, shape.rows_end), shape.rows); row < most && lines.next();) {
     if (is_no_row(lines.line(), shape.separator)) continue;

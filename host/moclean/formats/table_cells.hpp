@@ -104,10 +104,13 @@ class TableCells {
 
 /// A cell as a name: quotes that are doubled are one.
 inline std::string unquoted(const TableCells& cells) {
-  std::string name(cells.text());
-  if (!cells.is_quoted()) return name;
-  for (std::size_t place = 0; (place = name.find("\"\"", place)) != name.npos; ++place)
-    name.erase(place, 1);
+  const std::string_view text = cells.text();
+  if (!cells.is_quoted()) return std::string(text);
+  std::string name;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    name += text[i];
+    if (text[i] == '"' && i + 1 < text.size() && text[i + 1] == '"') ++i;
+  }
   return name;
 }
 

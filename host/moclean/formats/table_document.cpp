@@ -12,6 +12,7 @@
 #include "moclean/formats/column_names.hpp"
 #include "moclean/formats/table_rows.hpp"
 #include "moclean/formats/table_times.hpp"
+#include "moclean/formats/text_lines.hpp"
 #include "moclean/formats/text_scanner.hpp"
 #include "moclean/motion/framed_source.hpp"
 
@@ -41,8 +42,9 @@ class TableReader {
     TableShape& shape = document_->shape;
     shape = shape_of({text(), file_, document_->extension, options_});
     state_columns(shape);
-    TableRows rows = rows_of(shape);
     Recording recording;
+    end_behind_last_row(shape, recording.notes.warnings);
+    TableRows rows = rows_of(shape);
     recording.columns = shape.roles.sample_names();
     recording.unit = shape.unit;
     recording.up = shape.up;
@@ -72,6 +74,24 @@ class TableReader {
           columns_in_layout(options_.layout, names, first_values(text(), shape, names.size()));
   }
 
+  // Spreadsheets write rows of separators alone behind a table: they are no frames.
+  void end_behind_last_row(TableShape& shape, std::vector<std::string>& warnings) const {
+    const std::string_view rows = text().substr(0, shape.rows_end);
+    const std::string nothing = std::string(" \t\r\n") + shape.separator;
+    const std::size_t last = rows.find_last_not_of(nothing);
+    if (last == rows.npos || last < shape.rows) return;
+    const std::size_t line_end = rows.find_first_of("\r\n", last);
+    if (line_end == rows.npos) return;
+    const bool is_pair = rows.substr(line_end, 2) == "\r\n";
+    shape.rows_end = line_end + (is_pair ? 2 : 1);
+    std::size_t count = 0;
+    TextLines tail(rows, shape.rows_end);
+    while (tail.next()) count += tail.line().find(shape.separator) != tail.line().npos;
+    if (count > 0)
+      warnings.push_back(fmt::format("{} line{} of separators alone at the end, no frames", count,
+                                     count == 1 ? "" : "s"));
+  }
+
   // A cell that cannot be read may show that numbers have decimal commas, or that its column has no
   // numbers at all: then once more.
   TableRows rows_of(TableShape& shape) const {
@@ -90,11 +110,13 @@ class TableReader {
 
   bool adapt(TableShape& shape, const UnreadableCell& cell) const {
     const TableSurvey survey = survey_rows(text(), shape);
-    if (survey.with_comma > 0 && survey.with_point > 0 && has_comma(cell.text))
-      throw FileError(
-          file_, cell.line,
-          fmt::format("expected a decimal point, as in other cells, found {}", excerpt(cell.text)));
-    bool is_changed = survey.with_comma > 0 && shape.decimal == '.';
+    const bool is_point = shape.decimal == '.';
+    const bool has_other = cell.text.find(is_point ? ',' : '.') != std::string::npos;
+    if (survey.with_comma > 0 && survey.with_point > 0 && has_other)
+      throw FileError(file_, cell.line,
+                      fmt::format("expected a decimal {}, as in other cells, found {}",
+                                  is_point ? "point" : "comma", excerpt(cell.text)));
+    bool is_changed = survey.with_comma > 0 && is_point;
     if (is_changed) shape.decimal = ',';
     if (std::ranges::all_of(survey.numbers, [](std::size_t count) { return count == 0; }))
       return false;
@@ -110,8 +132,6 @@ class TableReader {
     }
     return is_changed;
   }
-
-  static bool has_comma(std::string_view cell) { return cell.find(',') != cell.npos; }
 
   [[noreturn]] void fail_number(const TableShape& shape, const UnreadableCell& cell) const {
     throw FileError(file_, cell.line,

@@ -37,7 +37,7 @@ bool table_number(std::string_view text, char decimal, double& value) {
   if (decimal == '.' || text.find(',') == std::string_view::npos)
     return (decimal == '.' || text.find('.') == std::string_view::npos) && parsed(text, value);
   if (text.size() > longest || text.find('.') != std::string_view::npos) return false;
-  std::array<char, longest> copy{};
+  std::array<char, longest> copy;  // of which only what is written is read
   std::replace_copy(text.begin(), text.end(), copy.begin(), ',', '.');
   return parsed({copy.data(), text.size()}, value);
 }

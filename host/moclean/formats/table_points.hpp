@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <cstddef>
 #include <map>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-
+#include "moclean/formats/column_names.hpp"
 #include "moclean/formats/column_roles.hpp"
 
 namespace moclean {
@@ -51,12 +49,8 @@ class TablePoints {
     }
     std::ranges::sort(roles_.points, {},
                       [](const ColumnPoint& point) { return std::ranges::min(point.columns); });
-    std::set<std::string> used;
-    for (ColumnPoint& point : roles_.points) {
-      const std::string name = point.name;
-      for (int i = 2; !used.insert(point.name).second; ++i)
-        point.name = fmt::format("{}_{}", name, i);
-    }
+    DistinctNames distinct;
+    for (ColumnPoint& point : roles_.points) point.name = distinct(point.name);
     return std::move(roles_);
   }
 

@@ -254,12 +254,13 @@ TableRows read_rows(std::string_view text, const TableShape& shape,
   return RowReader(text, shape, file, checks_times).read();
 }
 
-TableSurvey survey_rows(std::string_view text, const TableShape& shape) {
+TableSurvey survey_rows(std::string_view text, const TableShape& shape, std::size_t most_rows) {
   TableSurvey survey;
   survey.numbers.resize(shape.roles.roles.size());
   TextLines lines(text.substr(0, shape.rows_end), shape.rows);
-  while (lines.next()) {
+  while (most_rows > 0 && lines.next()) {
     if (is_no_row(lines.line(), shape.separator)) continue;
+    --most_rows;
     std::size_t column = 0;
     for (TableCells cells(lines.line(), shape.separator);
          cells.next() && column < survey.numbers.size(); ++column) {
@@ -267,8 +268,10 @@ TableSurvey survey_rows(std::string_view text, const TableShape& shape) {
       const bool is_number =
           table_number(cells.text(), '.', value) || table_number(cells.text(), ',', value);
       if (is_number && !std::isnan(value)) ++survey.numbers[column];
-      survey.with_point += is_number && has_decimal(cells.text(), '.');
-      survey.with_comma += is_number && has_decimal(cells.text(), ',');
+      const ColumnRole role = shape.roles.roles[column];
+      if (!is_number || role == ColumnRole::other || role == ColumnRole::angle) continue;
+      survey.with_point += has_decimal(cells.text(), '.');
+      survey.with_comma += has_decimal(cells.text(), ',');
     }
   }
   return survey;

@@ -34,13 +34,14 @@ struct TableRows {
 TableRows read_rows(std::string_view text, const TableShape& shape,
                     const std::filesystem::path& file, bool checks_times);
 
-/// What all cells of a table are, without regard to what they should be.
+/// What the cells of a table, or of its first rows, are, without regard to what they should be.
 struct TableSurvey {
   std::vector<std::size_t> numbers;  ///< per column
-  std::size_t with_point = 0;        ///< cells with a decimal point
-  std::size_t with_comma = 0;        ///< cells with a decimal comma
+  std::size_t with_point = 0;        ///< cells with a decimal point in columns that are used
+  std::size_t with_comma = 0;        ///< cells with a decimal comma, likewise
 };
-TableSurvey survey_rows(std::string_view text, const TableShape& shape);
+TableSurvey survey_rows(std::string_view text, const TableShape& shape,
+                        std::size_t most_rows = static_cast<std::size_t>(-1));
 
 /// Whether a line between rows is none of them: blank, or a comment.
 bool is_no_row(std::string_view line, char separator);
