@@ -130,6 +130,7 @@ Job job_of(const DenoiseOptions& options) {
   Job job{.files = expand_folders(options.inputs),
           .reading = options.reading,
           .truth_frames = options.truth_frames,
+          .from_rotations = options.from_rotations,
           .chain = options.chain,
           .max_gap = options.max_gap,
           .keep_observed = options.keep_observed,
