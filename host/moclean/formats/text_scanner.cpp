@@ -27,8 +27,9 @@ bool is_microsoft_nan(std::string_view word) {
   return word.starts_with("1.#IND") || word.starts_with("1.#QNAN") || word.starts_with("1.#SNAN");
 }
 
-// Whether a sign stands in a word where only the next number can begin.
+// Whether a sign or a second point stands in a word where only the next number can have it.
 bool is_glued(std::string_view word) {
+  if (std::count(word.begin(), word.end(), '.') > 1 && is_decimal_digit(word.back())) return true;
   for (std::size_t i = 1; i < word.size(); ++i)
     if ((word[i] == '-' || word[i] == '+') && (is_decimal_digit(word[i - 1]) || word[i - 1] == '.'))
       return true;
