@@ -118,6 +118,15 @@ TEST(AmcWrite, KeepsANumberThatIsMissing) {
   EXPECT_LE(largest_difference(filled.samples, take.samples), 1e-4);
 }
 
+// A number sign is a comment elsewhere.
+TEST(AmcWrite, KeepsWhatMicrosoftsRuntimesPrintForNone) {
+  const std::string text = swapped(test::tiny_amc, "0 90\n", "-1.#IND00 1.#QNAN # none\n");
+  const Recording take = from_amc(text);
+
+  EXPECT_TRUE(take.channels.row(1).tail(2).array().isNaN().all());
+  EXPECT_EQ(as_amc(take), text);
+}
+
 TEST(AmcWrite, RefusesRotationsOfOtherSkeletons) {
   Recording take = from_amc(test::tiny_amc);
   take.source.reset();

@@ -94,6 +94,7 @@ INSTANTIATE_TEST_SUITE_P(
         Spelling{"one word", "MOTION\nFrames: 2\nFrameTime: 0.01\n" + rows},
         Spelling{"one word, no blank", "MOTION\nFrames:2\nFRAMETIME:0.01\n" + rows},
         Spelling{"float count", "MOTION\nFrames: 2.0\nFrame Time: 0.01\n" + rows},
+        Spelling{"time first", "MOTION\nFrame Time: 0.01\nFrames: 2\n" + rows},
         Spelling{"blanks behind the count", "MOTION\nFrames: 2    \nFrame Time: 0.01  \n" + rows},
         Spelling{"no last line end", header + rows.substr(0, rows.size() - 1)},
         Spelling{"blank lines", header + "1.5 2 0 0\n\n3 4 90 -1.25\n\n\n"},
@@ -263,6 +264,7 @@ TEST(BvhJoints, MayHaveNoChannelsAndNamedEnds) {
 // and so on
 HIERARCHY
 ROOT a { OFFSET 0 0 0 CHANNELS 1 Zrotation
+  # note
   JOINT b { OFFSET 1 0 0 CHANNELS 0
     End Site Tip of b { OFFSET 1 0 0 } } }
 MOTION

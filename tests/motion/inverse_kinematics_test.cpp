@@ -126,6 +126,54 @@ TEST(InverseKinematics, DoesNotFollowASpikeOfWholeTurns) {
   EXPECT_LE((channels.rightCols(9).col(0).array() - 0.01).abs().maxCoeff(), 0.1);
 }
 
+// Whatever number of turns a search makes about an axis of its own; a whole turn more where the
+// input has it.
+TEST(InverseKinematics, UnwrapsTheAngleOfAHinge) {
+  Skeleton leg;
+  leg.bones = {{.name = "hip", .channels = {rotate_x}},
+               {.name = "foot", .parent = 0, .offset = {0, -1, 0}}};
+  const Matrix start{{2 * pi + 0.1}, {2 * pi + 0.1}, {2.9}, {2 * pi}, {0.1}};
+  const Matrix wanted{{0.3}, {0.5}, {0.6}, {0.6}, {0.7}};
+
+  const Matrix channels = inverse_kinematics(leg, start, forward_kinematics(leg, wanted));
+
+  const Matrix turns{{2 * pi}, {2 * pi}, {2 * pi}, {2 * pi}, {0}};
+  EXPECT_LE(largest_difference(channels, wanted + turns), 1e-7);
+}
+
+// Two turns reach a direction in two ways; damage threw the input to the other one for two frames.
+TEST(InverseKinematics, BendsABoneAsInTheFrameBefore) {
+  Skeleton hand;
+  hand.bones = {{.name = "hand", .channels = {rotate_z, rotate_x}, .tail = {0, -1, 0}}};
+  Matrix wanted(6, 2), start;
+  for (Index f = 0; f < 6; ++f) wanted.row(f) << 0.3 + 0.02 * static_cast<double>(f), 0.4;
+  start = wanted;
+  start.row(2) << wanted(2, 0) + pi + 0.3, pi - wanted(2, 1) + 0.2;
+  start.row(3) << wanted(3, 0) + pi - 0.2, pi - wanted(3, 1) + 0.3;
+
+  const Matrix channels = inverse_kinematics(hand, start, forward_kinematics(hand, wanted));
+
+  EXPECT_LE(largest_difference(channels, wanted), 1e-7);
+}
+
+TEST(InverseKinematics, BeginsBetweenNeighboursWhereAChannelIsMissing) {
+  Matrix given(3, 9);
+  given << Matrix::Constant(1, 9, 0.1), Matrix::Constant(1, 9, nan), Matrix::Constant(1, 9, 0.3);
+  const Matrix whole = forward_kinematics(arm(), Matrix::Constant(3, 9, 0.2));
+  Matrix positions = whole;
+
+  const Matrix filled = inverse_kinematics(arm(), given, positions);
+  positions.row(1).tail(6).setConstant(nan);
+  const Matrix hidden = inverse_kinematics(arm(), given, positions);
+
+  // No position tells of the hand's turns, and of none where all below the shoulder is hidden.
+  EXPECT_LE(largest_difference(forward_kinematics(arm(), filled).leftCols(9), whole), found);
+  EXPECT_TRUE(filled.row(1).head(6).allFinite());
+  EXPECT_NEAR(filled(1, 2), 0.2, 1e-6);
+  EXPECT_TRUE(filled.row(1).tail(3).array().isNaN().all());
+  EXPECT_TRUE(hidden.row(1).array().isNaN().all());
+}
+
 // A body of any shape: bones with three rotations, some with one or two, offsets or translations
 // channels, a tail as bones of ASF have.
 Skeleton random_skeleton(Random& random, bool has_hinges, bool has_tails) {

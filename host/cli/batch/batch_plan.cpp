@@ -78,6 +78,7 @@ Json parameters_of(const DenoiseOptions& options, const OutputPlan& outputs, std
   const ReadOptions& reading = options.reading;
   Json record;
   record["method"] = to_string(options.chain);
+  record["from_rotations"] = options.from_rotations;
   record["max_gap"] = options.max_gap ? Json(*options.max_gap) : Json(nullptr);
   record["keep_observed"] = options.keep_observed;
   record["frames"] = frames_record(reading.frames);

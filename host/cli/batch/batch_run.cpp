@@ -40,6 +40,7 @@ Job job_of(const BatchPlan& plan, Manifest* manifest, const std::vector<std::siz
           .outputs = outputs_of(plan.outputs, takes),
           .truths = picked(plan.truths, takes),
           .truth_frames = options.truth_frames,
+          .from_rotations = options.from_rotations,
           .chain = options.chain,
           .max_gap = options.max_gap,
           .keep_observed = options.keep_observed,

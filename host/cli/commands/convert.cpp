@@ -3,8 +3,11 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include "moclean/core/error.hpp"
 #include "moclean/formats/formats.hpp"
+#include "moclean/formats/losses.hpp"
 #include "moclean/formats/read_write.hpp"
 #include "moclean/run/inputs.hpp"
 #include "moclean/run/outputs.hpp"
@@ -21,11 +24,17 @@ struct ConvertOptions {
   std::filesystem::path input;
   std::filesystem::path output;
   ReadOptions reading;
+  bool strict = false;
 };
 
 ExitCode run(const ConvertOptions& options) {
   require_writable_recording(options.output);
   const Recording clip = read_recording(options.input, options.reading);
+  const std::vector<std::string> lost =
+      losses(clip, *format_of(options.input), *format_of(options.output));
+  if (options.strict && !lost.empty())
+    throw FileError(options.output, fmt::format("cannot be written: {}", fmt::join(lost, "; ")));
+  for (const std::string& loss : lost) warn("{}: {}", options.output.string(), loss);
   write_recording(options.output, clip);
   for (const std::string& line : note_lines(options.input, clip.notes)) warn("{}", line);
   say("{} -> {}: {} frames x {} columns\n", options.input.string(), options.output.string(),
@@ -60,6 +69,8 @@ void add_convert(CLI::App& program, Action& action) {
       ->required()
       ->type_name("");
   add_input_options(command, options->reading);
+  command.add_flag("--strict", options->strict,
+                   "Fail, and write nothing, if the format of OUTPUT cannot hold all of INPUT");
   command.callback([&action, options] { action = [options] { return run(*options); }; });
 }
 

@@ -130,6 +130,11 @@ void add_gaps(CLI::App& command, DenoiseOptions& options) {
       ->type_name("SECONDS")
       ->group(method_group);
   command
+      .add_flag("--from-rotations", options.from_rotations,
+                "First take spikes of one or two frames out of the rotations of a BVH or AMC file, "
+                "joint by joint; the method then works on the positions that remain")
+      ->group(method_group);
+  command
       .add_flag("--keep-observed", options.keep_observed,
                 "Pass samples that were observed and not rejected through as they are")
       ->group(method_group);

@@ -41,6 +41,7 @@ struct DenoiseOptions : BackendOptions {
   RobustPca method;                 ///< what slra and rpca leave open; tolerance: by complete()
 
   std::optional<double> max_gap;  ///< seconds; longer gaps stay missing
+  bool from_rotations = false;    ///< take spikes out of rotations first
   bool keep_observed = false;     ///< pass trusted samples through
   bool overlap = true;            ///< of reading, solving and writing
 

@@ -56,7 +56,7 @@ class BvhParser {
 
   // `written` is the text as it stands in the file.
   SkeletonMotion parse(double rate, std::string_view written) {
-    while (scanner_.peek() == '#' || scanner_.peek() == '/') scanner_.next_line();
+    while (at_comment()) scanner_.next_line();
     scanner_.expect("HIERARCHY");
     while (!at_motion()) item();
     if (open_ >= 0)
@@ -73,8 +73,10 @@ class BvhParser {
   }
 
  private:
+  bool at_comment() { return scanner_.peek() == '#' || scanner_.peek() == '/'; }
+
   bool at_motion() {
-    scanner_.peek();
+    while (at_comment()) scanner_.next_line();
     document_.motion = text_.size() - scanner_.bytes_left();
     return scanner_.accept("MOTION");
   }

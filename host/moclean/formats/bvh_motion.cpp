@@ -73,19 +73,33 @@ class BvhMotionParser {
  private:
   std::size_t place() const { return text_.size() - scanner_.bytes_left(); }
 
+  // Either line may stand first.
   void header(double rate) {
-    if (!accept_label("Frames")) scanner_.fail_expected("Frames:");
+    bool has_frames = false, has_time = false;
+    for (bool is_any = true; is_any;) {
+      is_any = false;
+      if (!has_frames && accept_label("Frames")) {
+        stated_frames();
+        has_frames = is_any = true;
+      } else if (!has_time && (accept_label("FrameTime") || accept_frame_time())) {
+        frame_time(rate);
+        has_time = is_any = true;
+      }
+    }
+    if (!has_frames) scanner_.fail_expected("Frames:");
+    if (!has_time && rate == 0)
+      scanner_.fail_expected("Frame Time: (--rate states the rate of a file without)");
+  }
+
+  void stated_frames() {
     document_.frames_word = next_word();
     const double frames = scanner_.number();  // some write 6.0
     if (frames < 0 || frames > 1e15 || frames != std::floor(frames))
       scanner_.fail(fmt::format("expected a number of frames, found {}", frames));
     document_.stated_frames = static_cast<Index>(frames);
-    const bool has_time = accept_label("FrameTime") || accept_frame_time();
-    if (!has_time) {
-      if (rate == 0)
-        scanner_.fail_expected("Frame Time: (--rate states the rate of a file without)");
-      return;
-    }
+  }
+
+  void frame_time(double rate) {
     document_.time_word = next_word();
     double seconds = 0;
     if (!scanner_.accept_number(seconds)) scanner_.fail_number();

@@ -88,15 +88,18 @@ class BvhWriter {
       text_ += value;
       done = word.first + word.size;
     };
-    if (recording_.frames() != document_.stated_frames)
-      put(document_.frames_word, fmt::to_string(recording_.frames()));
     const double stated = document_.frame_time > 0 ? rate_from_period(document_.frame_time) : 0;
     const bool is_new = recording_.frame_rate > 0 && recording_.frame_rate != stated;
     std::string time = is_new ? fmt::format("{:.8g}", 1 / recording_.frame_rate) : "";
     if (spelling_.has_comma) std::replace(time.begin(), time.end(), '.', ',');
-    if (is_new && document_.time_word.size > 0) put(document_.time_word, time);
+    const bool has_time = document_.time_word.size > 0;
+    const bool time_first = has_time && document_.time_word.first < document_.frames_word.first;
+    if (is_new && time_first) put(document_.time_word, time);
+    if (recording_.frames() != document_.stated_frames)
+      put(document_.frames_word, fmt::to_string(recording_.frames()));
+    if (is_new && has_time && !time_first) put(document_.time_word, time);
     text_ += text.substr(done, document_.rows - done);
-    if (is_new && document_.time_word.size == 0) text_ += "Frame Time: " + time + '\n';
+    if (is_new && !has_time) text_ += "Frame Time: " + time + '\n';
   }
 
   // The rows of the file, in which numbers that have changed are replaced.

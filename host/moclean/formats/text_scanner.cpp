@@ -20,7 +20,7 @@ const char* skip_plus(const char* first, const char* last) {
   return first + 1 < last && first[0] == '+' && first[1] != '-' ? first + 1 : first;
 }
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_decimal_digit(char c) { return c >= '0' && c <= '9'; }
 
 // `1.#IND`, `-1.#QNAN00` and their like.
 bool is_microsoft_nan(std::string_view word) {
@@ -28,10 +28,11 @@ bool is_microsoft_nan(std::string_view word) {
   return word.starts_with("1.#IND") || word.starts_with("1.#QNAN") || word.starts_with("1.#SNAN");
 }
 
-// Whether a sign stands in a word where only the next number can begin.
+// Whether a sign or a second point stands in a word where only the next number can have it.
 bool is_glued(std::string_view word) {
+  if (std::count(word.begin(), word.end(), '.') > 1 && is_decimal_digit(word.back())) return true;
   for (std::size_t i = 1; i < word.size(); ++i)
-    if ((word[i] == '-' || word[i] == '+') && (is_digit(word[i - 1]) || word[i - 1] == '.'))
+    if ((word[i] == '-' || word[i] == '+') && (is_decimal_digit(word[i - 1]) || word[i - 1] == '.'))
       return true;
   return false;
 }

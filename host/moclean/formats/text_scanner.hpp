@@ -105,7 +105,14 @@ class TextScanner {
   enum class Kind : char { text, blank, line_end, mark, comment };
   Kind kind(char c) const { return kinds_[static_cast<unsigned char>(c)]; }
   bool is_word_end(const char* position) const {
-    return position == end_ || kind(*position) != Kind::text;
+    if (position == end_) return true;
+    const Kind own = kind(*position);
+    return own != Kind::text && !(own == Kind::comment && is_in_nan(position));
+  }
+  // Whether a `#` that is no comment stands here, behind something else: that of `-1.#IND`.
+  bool is_in_nan(const char* position) const {
+    return position[-1] == '.' && end_ - position > 1 &&
+           (position[1] == 'I' || position[1] == 'Q' || position[1] == 'S');
   }
   void assign(std::string_view characters, Kind kind);
   void skip_to_line_end();

@@ -7,12 +7,15 @@ namespace moclean {
 namespace {
 
 Eigen::Vector3d unwrapped(const Eigen::Vector3d& angles, const Eigen::Vector3d& reference) {
-  constexpr double turn = 2 * std::numbers::pi;
-  const Eigen::Array3d turns = ((reference - angles).array() / turn).round();
-  return angles.array() + turn * turns;
+  return angles.binaryExpr(reference, [](double a, double b) { return nearest_turn(a, b); });
 }
 
 }  // namespace
+
+double nearest_turn(double angle, double reference) {
+  constexpr double turn = 2 * std::numbers::pi;
+  return angle + turn * std::round((reference - angle) / turn);
+}
 
 Eigen::Vector3d nearest_angles(const Eigen::Vector3d& angles, const Eigen::Vector3d& reference) {
   constexpr double pi = std::numbers::pi;

@@ -17,4 +17,7 @@ Eigen::Vector3d euler_angles(const Eigen::Matrix3d& rotation, const std::array<i
 /// the middle axis (a + pi, pi - b, c + pi).
 Eigen::Vector3d nearest_angles(const Eigen::Vector3d& angles, const Eigen::Vector3d& reference);
 
+/// The angle of the same turn about one axis, whole turns more or less, nearest to another.
+double nearest_turn(double angle, double reference);
+
 }  // namespace moclean

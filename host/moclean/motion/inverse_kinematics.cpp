@@ -22,21 +22,104 @@ double largest_step(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   return (a - b).cwiseAbs().maxCoeff();
 }
 
+// Whether the input has the same rotation in two frames, nearly, by other angles.
+bool input_wraps(const Matrix& given, Index first, Index frame) {
+  constexpr double small = 0.5;
+  const GivenAngles input(&given(frame, first)), before(&given(frame - 1, first));
+  const Eigen::Vector3d near = nearest_angles(input, before);
+  return near != input && largest_step(near, before) < small;
+}
+
 // Where the angles of a bone jump between two frames, though the same rotation has others that do
-// not, they follow the frame before; unless the
-// input wraps there, too.
+// not, they follow the frame before; unless the input wraps there, too.
 void follow(const Matrix& given, Index first, Matrix& found) {
-  constexpr double half_turn = std::numbers::pi, small = 0.5;
+  constexpr double half_turn = std::numbers::pi;
   for (Index f = 1; f < found.rows(); ++f) {
     Angles angles(&found(f, first));
     const Angles before(&found(f - 1, first));
-    const GivenAngles input(&given(f, first)), input_before(&given(f - 1, first));
+    const GivenAngles input(&given(f, first));
     if (angles == input || largest_step(angles, before) <= half_turn) continue;
-    const Eigen::Vector3d input_near = nearest_angles(input, input_before);
-    const bool input_wraps = input_near != input && largest_step(input_near, input_before) < small;
     const Eigen::Vector3d near = nearest_angles(angles, before);
-    if (!input_wraps && largest_step(near, before) <= half_turn) angles = near;
+    if (largest_step(near, before) <= half_turn && !input_wraps(given, first, f)) angles = near;
   }
+}
+
+// The same of one angle.
+void follow_turn(const Matrix& given, Index channel, Matrix& found) {
+  constexpr double half_turn = std::numbers::pi, small = 0.5;
+  for (Index f = 1; f < found.rows(); ++f) {
+    double& angle = found(f, channel);
+    const double before = found(f - 1, channel), input = given(f, channel),
+                 input_before = given(f - 1, channel);
+    if (angle == input || std::abs(angle - before) <= half_turn) continue;
+    const double near = nearest_turn(input, input_before);
+    if (near == input || std::abs(near - input_before) >= small)
+      angle = nearest_turn(angle, before);
+  }
+}
+
+void follow_all(const Skeleton& skeleton, const Matrix& given, Matrix& found) {
+  const PoseSolver solver(skeleton);
+  Index channel = 0;
+  for (std::size_t b = 0; b < skeleton.bones.size(); ++b) {
+    const Index first = solver.turn_of(b).first;
+    if (first >= 0) follow(given, first, found);
+    for (const Channel kind : skeleton.bones[b].channels) {
+      if (first < 0 && !is_translation(kind)) follow_turn(given, channel, found);
+      ++channel;
+    }
+  }
+}
+
+// The largest step of the rotations of a frame that are not those given, from the frame before;
+// whole turns, and steps where the input wraps, are none.
+double largest_turn(const Skeleton& skeleton, const std::vector<PoseSolver::Turn>& turns,
+                    const Matrix& given, const Matrix& found, Index frame, const double* row) {
+  double most = 0;
+  Index channel = 0;
+  for (std::size_t b = 0; b < skeleton.bones.size(); ++b) {
+    const bool wraps = turns[b].first >= 0 && input_wraps(given, turns[b].first, frame);
+    for (const Channel kind : skeleton.bones[b].channels) {
+      const double before = found(frame - 1, channel);
+      if (!wraps && !is_translation(kind) && found(frame, channel) != given(frame, channel))
+        most = std::max(most, std::abs(nearest_turn(row[channel], before) - before));
+      ++channel;
+    }
+  }
+  return most;
+}
+
+// Where rotations jump, the search begins once more, from those of the frame before: damage may
+// have thrown the input to where a bone bends the other way (two degrees of freedom reach a
+// direction twice). What it finds is taken if it is as near and jumps less. True if any was.
+bool search_from_before(const Skeleton& skeleton, const Matrix& given, const Matrix& positions,
+                        const Matrix& current, Matrix& found) {
+  constexpr double jump = std::numbers::pi / 2;
+  bool is_any = false;
+  PoseSolver solver(skeleton);
+  std::vector<PoseSolver::Turn> turns;
+  for (std::size_t b = 0; b < skeleton.bones.size(); ++b) turns.push_back(solver.turn_of(b));
+  for (Index f = 1; f < found.rows(); ++f) {
+    const double turn = largest_turn(skeleton, turns, given, found, f, found.row(f).data());
+    if (turn <= jump) continue;
+    const Matrix old = found.row(f);
+    Matrix row = old;
+    for (Index c = 0; c < row.cols(); ++c)
+      if (old(0, c) != given(f, c)) row(0, c) = found(f - 1, c);
+    solver.solve(positions.row(f).data(), current.row(f).data(), row.data());
+    const auto distance = [&](const Matrix& channels) {
+      const auto way = (forward_kinematics(skeleton, channels) - positions.row(f)).array().eval();
+      return way.isNaN().select(0, way).square().sum();
+    };
+    const double least =
+        1e-12 * positions.row(f).array().isNaN().select(0, positions.row(f)).squaredNorm();
+    if (largest_turn(skeleton, turns, given, found, f, row.data()) < turn &&
+        distance(row) <= 1.02 * distance(old) + least) {
+      found.row(f) = row;
+      is_any = true;
+    }
+  }
+  return is_any;
 }
 
 bool is_missing(double value) { return std::isnan(value); }
@@ -105,9 +188,10 @@ Matrix inverse_kinematics(const Skeleton& skeleton, const Matrix& channels, cons
     for (Index f = block * frames_at_once; f < last; ++f)
       solver.solve(positions.row(f).data(), current.row(f).data(), found.row(f).data());
   });
-  const PoseSolver solver(skeleton);
-  for (std::size_t b = 0; b < skeleton.bones.size(); ++b)
-    if (const Index first = solver.turn_of(b).first; first >= 0) follow(channels, first, found);
+  const Matrix start = has_missing ? filled_channels(channels) : channels;
+  follow_all(skeleton, start, found);
+  if (search_from_before(skeleton, start, positions, current, found))
+    follow_all(skeleton, start, found);
   for (Index f = 0; has_missing && f < found.rows(); ++f)
     leave_missing(skeleton, channels.row(f).data(), positions.row(f).data(), found.row(f).data());
   return found;

@@ -23,7 +23,8 @@ namespace moclean {
 /// A joint keeps its channels, to the bit, if its position, those of its children and those of its
 /// ancestors are (to 1e-9 of the body's size) what `channels` makes them, or NaN; a frame where
 /// that is true of all joints is kept whole. Frames are independent, but for this: where the input
-/// was thrown by whole turns and the result need not be, angles follow the frame before.
+/// was thrown by whole turns and the result need not be, angles follow the frame before, and where
+/// rotations still jump the search begins once more, from the frame before.
 ///
 /// A channel that is NaN was not observed: the search begins between its neighbours in time. It
 /// becomes a number where a joint that it moves has a position, and is NaN still where none has.

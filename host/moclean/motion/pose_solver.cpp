@@ -260,7 +260,8 @@ void PoseSolver::write(double* channels) const {
     for (std::size_t c = 0; c < link.channels.size(); ++c) {
       const Index place = link.first_channel + static_cast<Index>(c);
       if (!is_translation(link.channels[c])) {
-        if (link.freedom != Freedom::none) put(place, angles[turns++], unchanged);
+        if (link.freedom != Freedom::none)
+          put(place, nearest_turn(angles[turns++], channels[place]), unchanged);
       } else if (link.travels) {
         put(place, link.pose.travel[axis_of(link.channels[c])], unchanged * size_);
       }

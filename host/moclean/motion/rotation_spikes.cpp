@@ -4,9 +4,11 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include <Eigen/Geometry>
+#include <fmt/format.h>
 
 #include "moclean/motion/euler_angles.hpp"
 
@@ -321,6 +323,28 @@ class SpikeSearch {
 std::vector<RotationSpike> take_out_spikes(const Skeleton& skeleton, Matrix& channels,
                                            const RotationSpikes& parameters) {
   return SpikeSearch(skeleton, channels, parameters).run();
+}
+
+bool clean_rotations(Recording& recording, const RotationSpikes& parameters) {
+  if (!recording.skeleton || recording.channels.size() == 0) return false;
+  const Skeleton& skeleton = *recording.skeleton;
+  const std::vector<RotationSpike> spikes =
+      take_out_spikes(skeleton, recording.channels, parameters);
+  const RotationSpike* largest = nullptr;
+  for (const RotationSpike& spike : spikes) {
+    auto frames = recording.samples.middleRows(spike.first, spike.frames);
+    frames = forward_kinematics(skeleton, recording.channels.middleRows(spike.first, spike.frames));
+    if (spike.is_turn && (!largest || spike.size > largest->size)) largest = &spike;
+  }
+  if (spikes.empty()) return true;
+  std::string warning =
+      fmt::format("{} spikes were taken out of the channels of the skeleton", spikes.size());
+  if (largest)
+    warning += fmt::format(", the largest turn {:.0f} degrees of {} in frame {}",
+                           largest->size * 180 / std::numbers::pi,
+                           skeleton.bones[largest->bone].name, largest->first);
+  recording.notes.warnings.push_back(std::move(warning));
+  return true;
 }
 
 }  // namespace moclean

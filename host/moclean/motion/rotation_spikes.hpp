@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "moclean/core/matrix.hpp"
+#include "moclean/motion/recording.hpp"
 #include "moclean/motion/skeleton.hpp"
 
 namespace moclean {
@@ -40,5 +41,10 @@ struct RotationSpike {
 /// New angles are those nearest to their neighbours'. Frames with a missing channel stay.
 std::vector<RotationSpike> take_out_spikes(const Skeleton& skeleton, Matrix& channels,
                                            const RotationSpikes& parameters = {});
+
+/// take_out_spikes() of the channels of a recording. In frames where it found some the samples
+/// become the positions that the channels make; a warning says how many and which is the largest.
+/// False for a recording without channels, which it leaves alone.
+bool clean_rotations(Recording& recording, const RotationSpikes& parameters = {});
 
 }  // namespace moclean

@@ -40,6 +40,8 @@ struct Job {
   std::vector<std::filesystem::path> truths = {};  ///< one per file, see truths_of(); empty: none
   std::optional<FrameRange> truth_frames = {};     ///< default: those of the takes
 
+  /// Take spikes out of the rotations of skeletons before all else; see clean_rotations().
+  bool from_rotations = false;
   Chain chain = {Automatic{}};
   std::optional<double> max_gap = {};  ///< seconds; longer gaps stay missing
   bool keep_observed = false;          ///< pass trusted samples through

@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/formats/formats.hpp"
+#include "moclean/motion/rotation_spikes.hpp"
 #include "moclean/run/byte_size.hpp"
 
 namespace moclean {
@@ -71,6 +73,10 @@ TakeReader::Take TakeReader::read(std::size_t index, MemoryShare memory) {
   require_room(index, file_bytes_[index]);
   Take take;
   take.clip = read_recording(job_.files[index], job_.reading);
+  if (job_.from_rotations && !clean_rotations(take.clip))
+    throw FileError(job_.files[index],
+                    "--from-rotations: has no rotations of a skeleton, expected " +
+                        any_extension(has_skeleton));
   require_solvable(take.clip, job_.files[index], job_.reading.frames, rules_.needs);
   const std::uint64_t bytes = bytes_of(take.clip, rules_.copies_solving);
   require_room(index, bytes);
