@@ -231,7 +231,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"SkeletonOutput",
                 {"walk.csv", "clean.bvh"},
                 2,
-                "own skeleton, expected .c3d, .trc, .csv, .tsv, .mot, .sto or .npy"},
+                "own skeleton, expected .c3d, .trc, .csv, .tsv, .mot, .sto, .npy or .npz"},
         Refused{"OutputWithoutExtension",
                 {"walk.csv", "clean"},
                 2,

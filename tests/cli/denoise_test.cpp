@@ -121,8 +121,8 @@ TEST_F(Denoise, RecordDescribesEverySegmentOfAnInput) {
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const nlohmann::json input = outcome.json()["inputs"][0];
   EXPECT_THAT(keys(input),
-              UnorderedElementsAre("file", "frames", "columns", "seconds", "frames_per_second",
-                                   "samples", "changed", "segments"));
+              UnorderedElementsAre("file", "frames", "columns", "layout", "seconds",
+                                   "frames_per_second", "samples", "changed", "segments"));
   EXPECT_THAT(keys(input["changed"]), UnorderedElementsAre("corrected", "filled", "largest"));
   const auto& samples = input["samples"];
   EXPECT_EQ(samples["kept"].get<int>() + samples["corrected"].get<int>(), 120 * 93);

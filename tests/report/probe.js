@@ -73,8 +73,15 @@
   await drawn();
   result.curveOf = byId("charts").dataset.joint;
   result.charts = byId("charts").querySelectorAll(".chart").length;
-  const canvas = byId("charts").querySelector("canvas");
-  const chart = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+  // A copy: browsers complain of pictures that are read more than once.
+  const pictureOf = (canvas) => {
+    const copy = document.createElement("canvas");
+    Object.assign(copy, { width: canvas.width, height: canvas.height });
+    const pen = copy.getContext("2d", { willReadFrequently: true });
+    pen.drawImage(canvas, 0, 0);
+    return pen.getImageData(0, 0, copy.width, copy.height);
+  };
+  const chart = pictureOf(byId("charts").querySelector("canvas"));
   result.cleanPixels = pixelsOf("clean", chart);
   result.markPixels = pixelsOf("mark", chart);
   const faint = (name, { data }) => {
@@ -91,8 +98,7 @@
   const filled = async (joint) => {
     choose("joint", joint);
     await drawn();
-    const picture = byId("charts").querySelector("canvas");
-    return Number(pixelsOf("filled", picture.getContext("2d").getImageData(0, 0, picture.width, picture.height)) > 3);
+    return Number(pixelsOf("filled", pictureOf(byId("charts").querySelector("canvas"))) > 3);
   };
   result.filledPixels = [await filled("7"), await filled("2")];
   const highlighted = async (at) => {

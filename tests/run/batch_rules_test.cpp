@@ -28,7 +28,7 @@ TEST(BatchRules, AfterSolvingFewerCopiesAreLeft) {
   const Job plain, page{.outputs = {.reports = {"page.html"}}};
 
   EXPECT_EQ(rules_of(plain, {}).copies_writing, 2u);
-  EXPECT_EQ(rules_of(page, {}).copies_writing, 8u);
+  EXPECT_EQ(rules_of(page, {}).copies_writing, 10u);
 }
 
 }  // namespace

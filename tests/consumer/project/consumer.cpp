@@ -30,7 +30,7 @@ int main(int, char** arguments) {
   const std::filesystem::path folder = arguments[1];
   std::filesystem::create_directories(folder);
   for (const char* name : {"1.csv", "3.csv"}) moclean::write_recording(folder / name, take());
-  std::ofstream(folder / "2.csv") << "a,b\n1,x\n";
+  std::ofstream(folder / "2.csv") << "a,b\n1,2\n3,x\n";
 
   moclean::Job job{.files = moclean::expand_folders({folder}),
                    .chain = moclean::parse_chain("rpca")};
