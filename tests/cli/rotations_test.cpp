@@ -39,6 +39,16 @@ Frame Time: 0.008333
   return text;
 }
 
+TEST(Rotations, ComeBackByteForByteWithoutAMethod) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write_text("arm.bvh", swinging_arm(25));
+
+  const Outcome outcome = run({"denoise", file, "-o", folder / "same.bvh", "--method", "none"});
+
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_EQ(read_file(folder / "same.bvh"), read_file(file));
+}
+
 TEST(Rotations, AreCleanedWhereTheirDamageIs) {
   const TemporaryFolder folder;
   const std::string file = folder.write_text("arm.bvh", swinging_arm(25));

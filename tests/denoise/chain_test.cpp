@@ -125,12 +125,12 @@ TEST(ParseChain, NamesWhatIsWrongAndWhatWouldBeRight) {
       "pca",
       "unknown method 'pca', expected one of auto, slra, rpca, tsvd, svt, completion, tslra, "
       "moving-average, gaussian, median, hampel, butterworth, savitzky-golay, whittaker, "
-      "whittaker-l1, gcv, kalman, interpolate");
+      "whittaker-l1, gcv, kalman, interpolate, none");
   expect_refused(
       "median+",
       "unknown method '', expected one of auto, slra, rpca, tsvd, svt, completion, tslra, "
       "moving-average, gaussian, median, hampel, butterworth, "
-      "savitzky-golay, whittaker, whittaker-l1, gcv, kalman, interpolate");
+      "savitzky-golay, whittaker, whittaker-l1, gcv, kalman, interpolate, none");
   expect_refused("hampel:width=7",
                  "method hampel: unknown key 'width', expected one of window, sigmas");
   expect_refused("tsvd:rank=0", "rank is 0, expected at least 1");

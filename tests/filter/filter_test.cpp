@@ -18,7 +18,7 @@ using testing::ThrowsMessage;
 std::vector<Filter> every_filter() {
   return {MovingAverage{}, GaussianFilter{}, MedianFilter{}, Hampel{},
           Butterworth{},   SavitzkyGolay{},  Whittaker{},    RobustWhittaker{},
-          GcvSpline{},     KalmanSmoother{}, Interpolate{}};
+          GcvSpline{},     KalmanSmoother{}, Interpolate{},  NoFilter{}};
 }
 
 // What a filter does not know: gaps, or the column without a sample.
@@ -47,6 +47,14 @@ TEST(Filtered, KeepsGapsOrFillsThemAndTreatsEveryColumnAlike) {
     EXPECT_TRUE((result.array().isNaN() == left_missing(walk, filter)).all());
     EXPECT_TRUE(test::same_bits(Matrix(result.col(5)), Matrix(result.col(4))));
   }
+}
+
+TEST(Filtered, NoFilterChangesNothing) {
+  Recording walk = test::synthetic_walk(60);
+  walk.samples(7, 3) = nan;
+  walk.samples(8, 3) = 1e9;
+
+  EXPECT_TRUE(test::same_bits(filtered(walk, NoFilter{}), walk.samples));
 }
 
 TEST(Filtered, OnlyInterpolateFillsGaps) {

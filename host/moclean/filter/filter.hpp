@@ -9,6 +9,7 @@
 #include "moclean/filter/gcv_spline.hpp"
 #include "moclean/filter/interpolate.hpp"
 #include "moclean/filter/kalman.hpp"
+#include "moclean/filter/no_filter.hpp"
 #include "moclean/filter/savitzky_golay.hpp"
 #include "moclean/filter/whittaker.hpp"
 #include "moclean/filter/window.hpp"
@@ -20,7 +21,7 @@ namespace moclean {
 /// and beside gaps stands in its own comment. A sample that is NaN stays NaN unless fills_gaps().
 using Filter =
     std::variant<MovingAverage, GaussianFilter, MedianFilter, Hampel, Butterworth, SavitzkyGolay,
-                 Whittaker, RobustWhittaker, GcvSpline, KalmanSmoother, Interpolate>;
+                 Whittaker, RobustWhittaker, GcvSpline, KalmanSmoother, Interpolate, NoFilter>;
 
 /// Whether a filter's parameters are in Hz or per second.
 template <class F>
