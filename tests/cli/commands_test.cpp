@@ -183,6 +183,43 @@ TEST(Convert, CsvToNpyAndBackKeepsEverySample) {
   EXPECT_TRUE(same_bits(filled, clip.samples));
 }
 
+TEST(Convert, ReplacesItsInputOnlyWhereItIsTold) {
+  const TemporaryFolder folder;
+  const std::string walk = folder.write("walk.csv", synthetic_walk(20));
+  std::filesystem::create_symlink(walk, folder / "link.csv");
+  std::filesystem::create_hard_link(walk, folder / "hard.csv");
+  const std::string before = content(walk);
+
+  for (const char* name : {"walk.csv", "link.csv", "hard.csv"}) {
+    const std::string output = folder / name;
+    for (const auto& outcome : {run({"convert", walk, output, "--frames", "0:5"}),
+                                run({"corrupt", walk, "-o", output, "--noise", "gaussian:sd=1"}),
+                                run({"corrupt", walk, "-o", folder / "noisy.csv", "--mask", output,
+                                     "--noise", "gaussian:sd=1"})}) {
+      EXPECT_EQ(outcome.exit_code, 2) << name;
+      EXPECT_THAT(outcome.err, HasSubstr("is an input; --force replaces it")) << name;
+    }
+  }
+  EXPECT_EQ(content(walk), before);
+  ASSERT_EQ(run({"convert", walk, walk, "--frames", "0:5", "--force"}).exit_code, 0);
+  EXPECT_EQ(read_recording(walk).frames(), 5);
+}
+
+TEST(Convert, SaysWhatIsLostAndFailsIfThatIsNotAllowed) {
+  const TemporaryFolder folder;
+  const std::string walk = folder.write("walk.csv", synthetic_walk(20));
+
+  const Outcome strict = run({"convert", walk, folder / "walk.npy", "--strict"});
+  const Outcome outcome = run({"convert", walk, folder / "walk.npy"});
+
+  EXPECT_EQ(strict.exit_code, 1);
+  EXPECT_THAT(strict.err,
+              HasSubstr("walk.npy: cannot be written: NPY does not hold the frame rate (120 Hz)"));
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.err, HasSubstr("walk.npy: NPY does not hold the frame rate (120 Hz)\n"));
+  EXPECT_THAT(folder.names(), ElementsAre("walk.csv", "walk.npy"));
+}
+
 TEST(Convert, TurnsASkeletonIntoJointPositions) {
   const auto take = debian_take("01_01.bvh");
   MOCLEAN_REQUIRE_FILE(take);

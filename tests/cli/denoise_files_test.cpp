@@ -240,5 +240,28 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"FileAsFolder", {"walk.csv", "walk.csv/"}, 2, "is a file"}),
     [](const auto& test) { return test.param.name; });
 
+TEST(Records, ReplaceNothingThatIsReadOrWritten) {
+  const TemporaryFolder folder;
+  const std::string walk = folder.write("walk.csv", synthetic_walk(20));
+  const std::string before = content(walk);
+  const auto denoise = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"denoise", walk, "-o", folder / "clean.csv", "--method", "median"});
+    return run(more);
+  };
+
+  for (const char* option : {"--json", "--lines"}) {
+    EXPECT_EQ(denoise({option, walk}).exit_code, 2) << option;
+    EXPECT_EQ(denoise({option, folder / "clean.csv"}).exit_code, 2) << option;
+    EXPECT_EQ(
+        denoise({option, folder / "t.csv", "--truth", folder.write("t.csv", synthetic_walk(20))})
+            .exit_code,
+        2)
+        << option;
+  }
+  EXPECT_EQ(denoise({"--json", folder / "r", "--lines", folder / "r"}).exit_code, 2);
+  EXPECT_EQ(content(walk), before);
+  EXPECT_THAT(folder.names(), ElementsAre("t.csv", "walk.csv"));
+}
+
 }  // namespace
 }  // namespace moclean::test

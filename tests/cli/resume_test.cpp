@@ -59,6 +59,21 @@ TEST_F(Resume, LeavesOutWhatIsDone) {
   EXPECT_THAT(done(denoise()), ElementsAre("0.csv", "1.csv", "2.csv"));  // without --resume
 }
 
+TEST_F(Resume, KnowsNamesOfAnyBytes) {
+  for (const char* name : {"in/a\xff.csv", "in/a\xfe.csv", "in/b\\xFF.csv", "in/b\xff/c.csv"}) {
+    fs::create_directories(fs::path(folder_ / name).parent_path());
+    folder_.write(name, small_walk(30));
+  }
+  ASSERT_EQ(denoise({"--resume"}).exit_code, 0);
+  const auto before = contents_below(folder_, "out");
+
+  const Outcome again = denoise({"--resume"});
+
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_THAT(done(again), IsEmpty());
+  EXPECT_EQ(contents_below(folder_, "out"), before);
+}
+
 TEST_F(Resume, DoesAgainWhatIsMissingOrChanged) {
   run_first();
   fs::remove(folder_ / "out/0.csv");

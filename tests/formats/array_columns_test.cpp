@@ -71,6 +71,18 @@ TEST(ArrayColumns, DoesWhatTheLayoutSays) {
       testing::ThrowsMessage<FileError>(HasSubstr("(9, 4) of 4 columns holds no points")));
 }
 
+TEST(ArrayColumns, DoesWhatTheSpecificationSays) {
+  ReadOptions options;
+  options.columns = "t(xyc)*";
+  const ArrayColumns found = columns({9, 7}, options);
+
+  EXPECT_THAT(found.names, ElementsAre("point1.x", "point1.y", "point2.x", "point2.y"));
+  EXPECT_THAT(found.samples, ElementsAre(1, 2, 4, 5));
+  EXPECT_THAT(found.confidences, ElementsAre(3, 3, 6, 6));
+  EXPECT_THAT(found.notes.passed_through, ElementsAre("column0", "column3", "column6"));
+  EXPECT_THAT([&] { columns({9, 6}, options); }, testing::Throws<ArgumentError>());
+}
+
 TEST(ArrayColumns, FindsAConfidenceBehindTheCoordinates) {
   Matrix four = numbers({9, 2, 4});
   for (const Index c : {3, 7}) four.col(c) = four.col(c).cwiseAbs().cwiseMin(1);

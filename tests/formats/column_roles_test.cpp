@@ -195,6 +195,7 @@ TEST(ColumnSpecification, GivesEveryColumnItsRole) {
             "tcccccc point1.x,point1.y,point1.z,point2.x,point2.y,point2.z");
   EXPECT_EQ(specified("o2(2(xy)o)", 11).substr(0, 11), "occccocccco");
   EXPECT_EQ(specified("3p", 3), "ppp ,,");
+  EXPECT_EQ(specified("i, t, (x,y)*", 4), specified("it(xy)*", 4));
 }
 
 TEST(ColumnSpecification, NamesPointsAfterTheirColumns) {

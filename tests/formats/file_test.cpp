@@ -1,6 +1,9 @@
 #include "moclean/formats/file.hpp"
 
+#include <thread>
+
 #include <gmock/gmock.h>
+#include <sys/stat.h>
 
 #include "moclean/core/error.hpp"
 
@@ -111,6 +114,24 @@ TEST(AtomicFile, RefusesTheNameOfAFolder) {
   fs::create_directory(folder.path() / "x.csv");
 
   EXPECT_THROW(AtomicFile(folder.path() / "x.csv"), FileError);
+}
+
+TEST(AtomicFile, WritesToADeviceOrPipeAndLeavesItThere) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path pipe = folder.path() / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  std::string read;
+  std::jthread reader([&] { read = read_file(pipe); });
+
+  {
+    AtomicFile file(pipe);
+    file.write("through");
+    file.commit();
+  }
+  reader.join();
+
+  EXPECT_EQ(read, "through");
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
 }
 
 }  // namespace

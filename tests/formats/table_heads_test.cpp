@@ -183,6 +183,17 @@ TEST_F(TableHeads, OfQtmAreReadWithAndWithoutFrameTimeAndNames) {
   }
 }
 
+TEST_F(TableHeads, OfQtmMayHoldEvents) {
+  const std::string text =
+      replaced(qtm_head, "MARKER_NAMES", "EVENT\tkick\t2\t0.01\nMARKER_NAMES") +
+      "1\t2\t3\t4\t5\t6\n";
+
+  const Recording recording = read("a.tsv", text);
+
+  EXPECT_EQ(recording.samples, (Matrix{{1, 2, 3, 4, 5, 6}}));
+  EXPECT_EQ(write("a.tsv", recording), text);
+}
+
 TEST_F(TableHeads, OfQtmSayAnotherCountAndRate) {
   Recording recording = read("a.tsv", qtm_head + "1\t2\t3\t4\t5\t6\n1\t2\t3\t4\t5\t6.0\n");
   recording = excerpt(recording, 1, 2);

@@ -53,7 +53,8 @@ class EarlierResults {
 
   // What a manifest says was made of takes below an input is no input.
   void learn(const fs::path& folder) {
-    if (!fs::exists(folder / manifest_name)) return;
+    std::error_code error;  // of a folder that cannot be read, say: who walks it tells of that
+    if (!fs::exists(folder / manifest_name, error)) return;
     const Manifest manifest(folder);
     const auto add = [&](const std::vector<fs::path>& files) {
       for (const fs::path& file : files) files_.insert(real_place(file));

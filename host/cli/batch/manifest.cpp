@@ -1,6 +1,7 @@
 #include "cli/batch/manifest.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <fstream>
 #include <set>
 #include <system_error>
@@ -13,6 +14,7 @@
 
 #include "moclean/core/error.hpp"
 #include "moclean/core/hash.hpp"
+#include "moclean/core/printable.hpp"
 #include "moclean/core/version.hpp"
 #include "moclean/formats/file.hpp"
 
@@ -24,6 +26,35 @@ namespace fs = std::filesystem;
 // One line; the same for the same values. Bytes that are not UTF-8 are replaced.
 std::string line_text(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+// A name as text that JSON can hold, whatever its bytes are: \xNN stands for what is no UTF-8 or
+// controls a terminal, and for a backslash. path_of() is the way back.
+std::string name_text(const fs::path& name) {
+  std::string text;
+  for (const char letter : name.string()) {
+    if (letter == '\\' || letter == '\n')
+      text += fmt::format("\\x{:02X}", static_cast<unsigned>(letter));
+    else
+      text += letter;
+  }
+  return printable(text);
+}
+
+fs::path path_of(const std::string& text) {
+  std::string name;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    unsigned byte = 0;
+    const char* const digits = text.data() + i + 2;
+    if (text.compare(i, 2, "\\x") == 0 && i + 4 <= text.size() &&
+        std::from_chars(digits, digits + 2, byte, 16).ptr == digits + 2) {
+      name += static_cast<char>(byte);
+      i += 3;
+    } else {
+      name += text[i];
+    }
+  }
+  return name;
 }
 
 // Of the content of a regular file; empty for others.
@@ -69,10 +100,9 @@ void Manifest::read() {
   }
 }
 
-// Below the folder of results wherever it is; the text that JSON has of it.
+// Below the folder of results wherever it is.
 std::string Manifest::name_of(const fs::path& file) const {
-  const std::string name = absolute_plain(file).lexically_relative(root_).string();
-  return Json::parse(line_text(Json(name))).get<std::string>();
+  return name_text(absolute_plain(file).lexically_relative(root_));
 }
 
 const Json* Manifest::line_of(const std::string& output) const {
@@ -107,7 +137,7 @@ void Manifest::add(const ManifestTake& take, const std::vector<CompleteFile>& fi
   const std::string output = name_of(take.outputs.front());
   Json line;
   line["output"] = output;
-  line["input"] = absolute_plain(take.file).string();
+  line["input"] = name_text(absolute_plain(take.file));
   line["input_hash"] = hash_of(take.input);
   std::error_code error;
   const std::uintmax_t size = fs::file_size(take.input, error);
@@ -139,7 +169,7 @@ std::vector<fs::path> Manifest::sides() const {
   std::vector<fs::path> files;
   for (const auto& [output, line] : lines_)
     for (const auto& [name, hash] : line["outputs"].items())
-      if (name != output) files.push_back((root_ / name).lexically_normal());
+      if (name != output) files.push_back((root_ / path_of(name)).lexically_normal());
   return files;
 }
 
@@ -147,8 +177,8 @@ std::vector<fs::path> Manifest::results_below(const fs::path& inputs) const {
   const fs::path folder = fs::weakly_canonical(inputs);
   std::vector<fs::path> files;
   for (const auto& [output, line] : lines_) {
-    const fs::path result = (root_ / output).lexically_normal();
-    const fs::path input = real_place(line["input"].get<std::string>());
+    const fs::path result = (root_ / path_of(output)).lexically_normal();
+    const fs::path input = real_place(path_of(line["input"].get<std::string>()));
     const fs::path below = input.lexically_relative(folder);
     if (input != real_place(result) && !below.empty() && *below.begin() != "..")
       files.push_back(result);

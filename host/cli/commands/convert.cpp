@@ -25,10 +25,12 @@ struct ConvertOptions {
   std::filesystem::path output;
   ReadOptions reading;
   bool strict = false;
+  bool force = false;
 };
 
 ExitCode run(const ConvertOptions& options) {
   require_writable_recording(options.output);
+  if (!options.force) require_other_file(options.input, options.output);
   const Recording clip = read_recording(options.input, options.reading);
   const std::vector<std::string> lost =
       losses(clip, *format_of(options.input), *format_of(options.output));
@@ -69,6 +71,7 @@ void add_convert(CLI::App& program, Action& action) {
       ->required()
       ->type_name("");
   add_input_options(command, options->reading);
+  command.add_flag("--force", options->force, "OUTPUT may be INPUT");
   command.add_flag("--strict", options->strict,
                    "Fail, and write nothing, if the format of OUTPUT cannot hold all of INPUT");
   command.callback([&action, options] { action = [options] { return run(*options); }; });

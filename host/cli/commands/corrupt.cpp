@@ -27,6 +27,7 @@ struct CorruptOptions {
   std::string noise;
   std::uint64_t seed = 0;
   ReadOptions reading;
+  bool force = false;
 };
 
 // 1 where the noise touched an entry, else 0.
@@ -36,6 +37,8 @@ ExitCode run(const CorruptOptions& options) {
   const NoiseChain noise = parse_noise_chain(options.noise);
   require_writable_recording(options.output);
   if (!options.mask.empty()) require_writable_recording(options.mask);
+  for (const std::filesystem::path& output : {options.output, options.mask})
+    if (!options.force) require_other_file(options.input, output);
   if (options.mask == options.output)
     throw ArgumentError(fmt::format("-o and --mask would both write {}", options.output.string()));
   const Recording clean = read_recording(options.input, options.reading);
@@ -93,6 +96,7 @@ void add_corrupt(CLI::App& program, Action& action) {
       ->capture_default_str()
       ->type_name("N");
   add_input_options(command, options->reading);
+  command.add_flag("--force", options->force, "Results may replace INPUT");
   command.callback([&action, options] { action = [options] { return run(*options); }; });
 }
 

@@ -212,6 +212,26 @@ RunReport run_shown(const BatchPlan& plan, const StandardStreams& streams, Manif
   }
 }
 
+// Records must not replace what is read or written beside them.
+void require_records_apart(const BatchPlan& plan) {
+  const DenoiseOptions& options = plan.common();
+  if (!options.json.empty() && options.json != "-" && options.json == options.lines)
+    throw ArgumentError(
+        fmt::format("--json and --lines would both write {}", options.json.string()));
+  for (const fs::path& record : {options.json, options.lines}) {
+    if (record.empty() || record == "-") continue;
+    for (const fs::path& file : plan.files) require_other_file(file, record);
+    for (const fs::path& file : {options.truth, options.reading.skeleton})
+      require_other_file(file, record);
+    for (const auto* files : {&plan.outputs.clean, &plan.outputs.outliers, &plan.outputs.masks,
+                              &plan.outputs.sigmas, &plan.outputs.reports})
+      for (const fs::path& file : *files)
+        if (fs::weakly_canonical(file) == fs::weakly_canonical(record))
+          throw ArgumentError(
+              fmt::format("{} is a result; records need a file of their own", record.string()));
+  }
+}
+
 bool runs_on_device(const BatchPlan& plan) {
   return std::ranges::any_of(plan.groups(), [&](const auto& takes) {
     return needs_backend(plan.options_of(takes.front()).chain);
@@ -220,6 +240,7 @@ bool runs_on_device(const BatchPlan& plan) {
 
 ExitCode run_planned(const BatchPlan& plan, const StandardStreams& streams) {
   const DenoiseOptions& options = plan.common();
+  require_records_apart(plan);
   const bool on_device = runs_on_device(plan);
   if (on_device && options.backend == "opencl") require_driver();
   const Interrupt interrupt;  // before the threads of the OpenCL driver

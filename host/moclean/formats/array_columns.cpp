@@ -9,13 +9,14 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/formats/column_roles.hpp"
 
 namespace moclean {
 namespace {
 
 using Shape = std::vector<std::uint64_t>;
 
-constexpr std::array<std::string_view, 3> axis_names = {".x", ".y", ".z"};
+constexpr std::array<std::string_view, 3> axis_suffixes = {".x", ".y", ".z"};
 
 std::string text_of(const Shape& shape) {
   std::string text;
@@ -93,7 +94,7 @@ bool looks_transposed(const Shape& shape, const Matrix& numbers) {
 }
 
 std::string point_name(Index point, std::size_t axis) {
-  return fmt::format("joint{}{}", point, axis_names[axis]);
+  return fmt::format("joint{}{}", point, axis_suffixes[axis]);
 }
 
 ArrayColumns plain(Index columns) {
@@ -141,6 +142,27 @@ ArrayColumns as_told(const Shape& shape, Index columns, const std::filesystem::p
                                       text_of(shape), columns, axes));
   ArrayColumns found = points(columns, axes, axes);
   found.notes.layout = points_text(columns, axes, axes, " (--layout)");
+  return found;
+}
+
+// As --columns says.
+ArrayColumns as_specified(Index columns, const std::string& specification) {
+  const ColumnRoles roles = parse_column_roles(specification, plain(columns).names);
+  ArrayColumns found;
+  found.names = roles.sample_names();
+  std::vector<Index> confidence_of(static_cast<std::size_t>(columns), -1);
+  for (const ColumnPoint& point : roles.points)
+    for (const std::size_t c : point.columns)
+      if (point.confidence) confidence_of[c] = static_cast<Index>(*point.confidence);
+  std::vector<bool> is_sample(static_cast<std::size_t>(columns), false);
+  for (const std::size_t c : roles.sample_columns()) {
+    found.samples.push_back(static_cast<Index>(c));
+    found.confidences.push_back(confidence_of[c]);
+    is_sample[c] = true;
+  }
+  for (std::size_t c = 0; c < is_sample.size(); ++c)
+    if (!is_sample[c]) found.notes.passed_through.push_back(roles.shown(c));
+  found.notes.layout = roles.described() + " (--columns)";
   return found;
 }
 
@@ -219,6 +241,7 @@ ArrayColumns columns_of_array(const Shape& shape, const Matrix& numbers,
                               const std::filesystem::path& file, const ReadOptions& options) {
   require_readable_shape(shape, file);
   const Index columns = numbers.cols();
+  if (!options.columns.empty()) return as_specified(columns, options.columns);
   if (options.layout != ColumnLayout::automatic) return as_told(shape, columns, file, options);
   return shape.size() == 3 && shape[2] > 1 ? of_points(shape, numbers, file)
                                            : of_rows(shape, columns);

@@ -19,7 +19,7 @@ struct ArrayColumns {
 };
 
 /// Tells from shape and numbers what the columns of an array are. `numbers` is [frames x all other
-/// axes, the last one fastest].
+/// axes, the last one fastest]. ReadOptions::columns goes before all else.
 ///
 /// (frames), (frames, columns): as many columns, points of three if 3 divides them; (frames,
 /// points, 3) and (frames, points, 2): points; (frames, points, 3) whose third number lies within 0

@@ -67,9 +67,10 @@ ColumnRoles recognise_columns(const std::vector<std::string>& names, const Matri
 /// Roles as a specification says: letters from left to right, `t` time, `i` index, `x` `y` `z`
 /// coordinates (a new point begins where a letter comes again), `c` confidence of the point before,
 /// `p` plain channel, `o` other, which passes through. `5(xyz)` is `xyz` five times, `(xyzc)*` as
-/// often as there are columns left. `names` are those of all columns; points are named after theirs
-/// where these tell one, else `point1`, ... Throws ArgumentError for a specification that is none,
-/// or that has more or fewer columns than there are.
+/// often as there are columns left; commas and blanks between them do not count. `names` are those
+/// of all columns; points are named after theirs where these tell one, else `point1`, ... Throws
+/// ArgumentError for a specification that is none, or that has more or fewer columns than there
+/// are.
 ColumnRoles parse_column_roles(std::string_view specification,
                                const std::vector<std::string>& names);
 

@@ -41,8 +41,14 @@ class SpecificationReader {
     constexpr int deepest = 16;
     if (depth > deepest) fail("fewer groups in each other");
     std::string found;
-    while (place_ < text_.size() && text_[place_] != ')') item(depth, found);
+    for (skip_commas(); place_ < text_.size() && text_[place_] != ')'; skip_commas())
+      item(depth, found);
     return found;
+  }
+
+  // Commas and blanks may stand between items, for whoever reads it.
+  void skip_commas() {
+    while (place_ < text_.size() && (text_[place_] == ',' || text_[place_] == ' ')) ++place_;
   }
 
   void item(int depth, std::string& found) {

@@ -62,6 +62,13 @@ AtomicFile::AtomicFile(fs::path target)
     throw FileError(target_, "cannot be written: there is no folder " + folder.string());
   if (fs::is_directory(target_, error))
     throw FileError(target_, "cannot be written: there is a folder of that name");
+  // A device or a pipe (/dev/null) is written to: a rename would put a file in its place.
+  if (fs::exists(target_, error) && !fs::is_regular_file(target_, error)) {
+    temporary_.clear();
+    stream_.open(target_, std::ios::binary);
+    if (!stream_) throw FileError(target_, "cannot be opened for writing");
+    return;
+  }
   stream_.open(temporary_, std::ios::binary);
   if (!stream_) throw FileError(target_, "cannot be written: no new file in " + folder.string());
 }
@@ -91,6 +98,7 @@ void AtomicFile::close() {
 
 void AtomicFile::commit() {
   close();
+  if (temporary_.empty()) return;
   std::error_code error;
   fs::rename(temporary_, target_, error);
   if (error) throw FileError(target_, "cannot be written: " + error.message());

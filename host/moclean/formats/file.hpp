@@ -17,7 +17,8 @@ bool is_left_of(const std::filesystem::path& file, const std::string& target_nam
 /// A file that appears under its name only when it is complete.
 ///
 /// Everything goes to a temporary file beside the target; commit() renames it. Without commit()
-/// the destructor removes the temporary file and the target stays as it was.
+/// the destructor removes the temporary file and the target stays as it was. A target that is a
+/// device or a pipe is written to at once.
 class AtomicFile {
  public:
   /// Throws FileError if the target's folder does not exist or cannot be written.

@@ -40,15 +40,17 @@ class QtmHead {
     throw FileError(table_.file, lines_.number(), problem);
   }
 
-  // Up to the first line that has no setting: its name is in capitals, with underscores.
+  // Up to the first line that has no setting: its name is in capitals, behind MARKER_NAMES with
+  // underscores (columns may be called in capitals, too). EVENT lines stand among them.
   void settings() {
     while (lines_.next()) {
       TableCells cells(lines_.line(), shape_.separator);
       cells.next();
       const std::string name = unquoted(cells);
-      const bool is_setting =
-          name.size() > 2 && name.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ_") == name.npos &&
-          (name.find('_') != name.npos || name == "FREQUENCY" || name == "DESCRIPTION");
+      const bool is_setting = name.size() > 2 &&
+                              name.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ_") == name.npos &&
+                              (markers_.empty() || name.find('_') != name.npos || name == "EVENT" ||
+                               name == "FREQUENCY" || name == "DESCRIPTION");
       if (!is_setting) {
         has_row_ = true;
         return;

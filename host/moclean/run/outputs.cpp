@@ -296,6 +296,12 @@ fs::path InputFolders::below(const fs::path& file) const {
   return file.filename();
 }
 
+void require_other_file(const fs::path& input, const fs::path& output) {
+  const auto identity = identity_of(input);
+  if (identity && identity == identity_of(output))
+    throw ArgumentError(fmt::format("{} is an input; --force replaces it", output.string()));
+}
+
 void require_writable(const fs::path& file) {
   if (fs::is_directory(file)) throw FileError(file, "cannot be written: it is a folder");
   require_writable_folder(folder_of(file), file);

@@ -80,6 +80,9 @@ class InputFolders {
 /// FileError unless its folder exists and can be written.
 void require_writable_recording(const std::filesystem::path& file);
 
+/// Throws ArgumentError if the two are one file, also through links.
+void require_other_file(const std::filesystem::path& input, const std::filesystem::path& output);
+
 /// Throws FileError unless the file's folder exists and can be written.
 void require_writable(const std::filesystem::path& file);
 
