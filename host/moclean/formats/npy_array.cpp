@@ -11,6 +11,7 @@
 
 #include "moclean/core/error.hpp"
 #include "moclean/formats/npy_header.hpp"
+#include "moclean/formats/text_encoding.hpp"
 #include "moclean/formats/text_scanner.hpp"
 
 namespace moclean {
@@ -114,16 +115,6 @@ double read_as(const char* bytes, bool swap) {
   return static_cast<double>(std::bit_cast<Real>(raw));
 }
 
-std::string utf8_of(std::uint32_t code) {
-  const auto tail = [code](int shift) {
-    return static_cast<char>(0x80U | (code >> shift & 0x3FU));
-  };
-  if (code < 0x80) return {static_cast<char>(code)};
-  if (code < 0x800) return {static_cast<char>(0xC0U | code >> 6), tail(0)};
-  if (code < 0x10000) return {static_cast<char>(0xE0U | code >> 12), tail(6), tail(0)};
-  return {static_cast<char>(0xF0U | (code >> 18 & 7U)), tail(12), tail(6), tail(0)};
-}
-
 std::string text_at(const char* bytes, const NpyType& type) {
   if (type.kind == 'S') {
     const std::string_view text(bytes, type.size);
@@ -136,7 +127,7 @@ std::string text_at(const char* bytes, const NpyType& type) {
       code |= static_cast<std::uint32_t>(
                   static_cast<unsigned char>(bytes[i + (type.order == '<' ? b : 3 - b)]))
               << (8 * b);
-    if (code != 0) text += utf8_of(code);
+    if (code != 0) put_utf8(code, text);
   }
   return text;
 }

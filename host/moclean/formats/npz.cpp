@@ -15,6 +15,7 @@
 #include <fmt/ranges.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/formats/text_encoding.hpp"
 #include "moclean/formats/text_scanner.hpp"
 #include "moclean/formats/zip_archive.hpp"
 #include "moclean/motion/framed_source.hpp"
@@ -175,22 +176,13 @@ class NpzReader {
   std::vector<std::string> names_;  // of arrays, without .npy
 };
 
-std::uint32_t next_code(std::string_view text, std::size_t& place) {
-  const auto byte = [&] { return static_cast<unsigned char>(text[place++]); };
-  const unsigned first = byte();
-  const int more = first < 0xC0 ? 0 : first < 0xE0 ? 1 : first < 0xF0 ? 2 : 3;
-  std::uint32_t code = more == 0 ? first : first & (0x3FU >> more);
-  for (int i = 0; i < more && place < text.size(); ++i) code = code << 6 | (byte() & 0x3FU);
-  return code;
-}
-
 // An array of text, '<U' as NumPy makes it.
 std::string text_array(const std::vector<std::string>& texts, bool is_scalar) {
   std::vector<std::vector<std::uint32_t>> codes(texts.size());
   std::size_t longest = 1;
   for (std::size_t i = 0; i < texts.size(); ++i) {
     for (std::size_t place = 0; place < texts[i].size();)
-      codes[i].push_back(next_code(texts[i], place));
+      codes[i].push_back(take_utf8(texts[i], place));
     longest = std::max(longest, codes[i].size());
   }
   std::string data =

@@ -1,8 +1,5 @@
 #include "moclean/formats/text_encoding.hpp"
 
-#include <cstddef>
-#include <cstdint>
-
 namespace moclean {
 namespace {
 
@@ -13,25 +10,6 @@ std::uint32_t unit_at(std::string_view bytes, std::size_t place, bool is_little)
 }
 
 char byte_of(std::uint32_t bits) { return static_cast<char>(bits & 0xFFU); }
-
-void put_utf8(std::uint32_t code, std::string& text) {
-  if (code < 0x80U) {
-    text += byte_of(code);
-    return;
-  }
-  if (code < 0x800U) {
-    text += byte_of(0xC0U | code >> 6U);
-  } else {
-    if (code < 0x10000U) {
-      text += byte_of(0xE0U | code >> 12U);
-    } else {
-      text += byte_of(0xF0U | code >> 18U);
-      text += byte_of(0x80U | (code >> 12U & 0x3FU));
-    }
-    text += byte_of(0x80U | (code >> 6U & 0x3FU));
-  }
-  text += byte_of(0x80U | (code & 0x3FU));
-}
 
 std::string utf8_of(std::string_view bytes, bool is_little) {
   std::string text;
@@ -56,6 +34,36 @@ std::size_t length_of(unsigned char first) {
 }
 
 }  // namespace
+
+void put_utf8(std::uint32_t code, std::string& text) {
+  if (code < 0x80U) {
+    text += byte_of(code);
+    return;
+  }
+  if (code < 0x800U) {
+    text += byte_of(0xC0U | code >> 6U);
+  } else {
+    if (code < 0x10000U) {
+      text += byte_of(0xE0U | code >> 12U);
+    } else {
+      text += byte_of(0xF0U | code >> 18U);
+      text += byte_of(0x80U | (code >> 12U & 0x3FU));
+    }
+    text += byte_of(0x80U | (code >> 6U & 0x3FU));
+  }
+  text += byte_of(0x80U | (code & 0x3FU));
+}
+
+std::uint32_t take_utf8(std::string_view text, std::size_t& place) {
+  const auto first = static_cast<unsigned char>(text[place]);
+  std::size_t length = length_of(first);
+  if (place + length > text.size()) length = 1;
+  std::uint32_t code = length == 1 ? first : first & (0x7FU >> length);
+  for (std::size_t k = 1; k < length; ++k)
+    code = code << 6U | (static_cast<unsigned char>(text[place + k]) & 0x3FU);
+  place += length;
+  return code;
+}
 
 std::string_view byte_order_mark(TextEncoding encoding) {
   switch (encoding) {
@@ -100,13 +108,7 @@ std::string encoded(std::string_view text, TextEncoding encoding) {
     bytes += byte_of(is_little ? unit >> 8U : unit);
   };
   for (std::size_t i = 0; i < text.size();) {
-    const auto first = static_cast<unsigned char>(text[i]);
-    std::size_t length = length_of(first);
-    if (i + length > text.size()) length = 1;
-    std::uint32_t code = length == 1 ? first : first & (0x7FU >> length);
-    for (std::size_t k = 1; k < length; ++k)
-      code = code << 6U | (static_cast<unsigned char>(text[i + k]) & 0x3FU);
-    i += length;
+    const std::uint32_t code = take_utf8(text, i);
     if (code < 0x10000U) {
       put(code);
     } else {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -23,6 +25,13 @@ DecodedText decoded(std::string_view bytes, bool& has_half_character);
 
 /// A part of a text, cut at a character's end, as its file stores it, without a mark.
 std::string encoded(std::string_view text, TextEncoding encoding);
+
+/// Appends a character to a text in UTF-8.
+void put_utf8(std::uint32_t code, std::string& text);
+
+/// The character at `place` of a text in UTF-8, which is moved behind it; where it is cut off or is
+/// none, its first byte.
+std::uint32_t take_utf8(std::string_view text, std::size_t& place);
 
 /// The byte order mark.
 std::string_view byte_order_mark(TextEncoding encoding);
