@@ -179,10 +179,22 @@ TEST(NpyAgain, PassesConfidencesThroughAndTakesPointsWithoutAnyForMissing) {
   const Recording take = read(file);
   EXPECT_THAT(take.columns, ElementsAre("joint0.x", "joint0.y", "joint0.z"));
   EXPECT_TRUE(test::same_bits(take.samples, Matrix{{1, 2, 3}, {test::nan, test::nan, test::nan}}));
+  EXPECT_TRUE(
+      test::same_bits(take.confidence, Matrix{{0.5, 0.5, 0.5}, {test::nan, test::nan, test::nan}}));
   EXPECT_THAT(take.notes.passed_through, ElementsAre("joint0 confidence"));
   EXPECT_EQ(rewritten(file, nothing), file);  // 4, 5, 6 stay though they are not trusted
   EXPECT_EQ(rewritten(file, [](Recording& all) { all.samples.row(1) << 7, 8, 9; }),
             head + bytes<double>({1, 2, 3, 0.5, 7, 8, 9, 0}));
+}
+
+TEST(NpyAgain, DoesNotUseConfidencesThatAreAlwaysZero) {
+  const std::string head = npy_head({'<', 'f', 8}, {2, 1, 4});
+  const std::string file = head + bytes<double>({1, 2, 3, 0, 4, 5, 6, 0});
+
+  const Recording take = read(file);
+  EXPECT_EQ(take.samples, (Matrix{{1, 2, 3}, {4, 5, 6}}));
+  EXPECT_THAT(take.notes.warnings, ElementsAre("every confidence is 0: they are not used"));
+  EXPECT_EQ(rewritten(file, nothing), file);
 }
 
 TEST(NpyAgain, WritesAPartOfTheFrames) {

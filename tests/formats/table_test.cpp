@@ -188,6 +188,9 @@ TEST(Table, TakesAPointOfNoConfidenceForMissing) {
 
   EXPECT_TRUE(same_bits(recording.samples,
                         Matrix{{test::nan, test::nan, 5, 6}, {3, 4, test::nan, test::nan}}));
+  EXPECT_TRUE(same_bits(recording.confidence, Matrix{{test::nan, test::nan, 0.5, 0.5},
+                                                     {0.1, 0.1, test::nan, test::nan}}));
+  EXPECT_THAT(recording.notes.layout, HasSubstr("weighed by their confidences"));
   EXPECT_EQ(written_again(recording), text);
   recording.samples(0, 0) = 1.5;
   EXPECT_EQ(written_again(recording),
@@ -198,6 +201,7 @@ TEST(Table, DoesNotUseAConfidenceThatIsAlwaysZero) {
   const Recording recording = table("A_x,A_y,A_visibility\n1,2,0\n3,4,0.0\n");
 
   EXPECT_EQ(recording.samples, (Matrix{{1, 2}, {3, 4}}));
+  EXPECT_EQ(recording.confidence.size(), 0);
   EXPECT_THAT(recording.notes.warnings, ElementsAre("every confidence is 0: they are not used"));
 }
 

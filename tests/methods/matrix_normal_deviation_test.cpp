@@ -41,16 +41,17 @@ MotionEstimate estimate_of(Index frames, Index columns, std::uint64_t seed) {
 TEST(VarianceLeft, IsTheDiagonalOfTheInverse) {
   for (const Index frames : {3, 4, 60}) {
     const Eigen::VectorXd precision = test::random_matrix(frames - 2, 1, 1).col(0).cwiseAbs2();
+    const Eigen::VectorXd confidence =
+        test::random_matrix(frames, 1, 2).col(0).cwiseAbs().cwiseMax(0.05);
     const Eigen::MatrixXd delta = second_differences(frames);
     const Eigen::Vector3d ratios(1e-6, 1, 1e4);  // noise over power
 
-    const Matrix left = variance_left(ratios, precision);
+    const Matrix left = variance_left(ratios, precision, confidence);
 
     for (Index k = 0; k < 3; ++k) {
+      const Eigen::MatrixXd samples = confidence.asDiagonal();
       const Eigen::MatrixXd posterior =
-          (Eigen::MatrixXd::Identity(frames, frames) +
-           ratios(k) * delta.transpose() * precision.asDiagonal() * delta)
-              .inverse();
+          (samples + ratios(k) * delta.transpose() * precision.asDiagonal() * delta).inverse();
       EXPECT_LE((left.col(k) - posterior.diagonal()).cwiseAbs().maxCoeff(), 1e-9)
           << frames << " " << k;
     }
@@ -61,7 +62,7 @@ TEST(VarianceLeft, IsTheDiagonalOfTheInverse) {
 TEST(VarianceLeft, IsTheKeptPower) {
   const Eigen::VectorXd ratio = Eigen::VectorXd::Constant(1, 1e5);
 
-  const Matrix left = variance_left(ratio, Eigen::VectorXd::Ones(598));
+  const Matrix left = variance_left(ratio, Eigen::VectorXd::Ones(598), Eigen::VectorXd::Ones(600));
 
   EXPECT_NEAR(left(300, 0) / kept_power(1e5, 1), 1, 1e-6);
   EXPECT_NEAR(left(0, 0) / kept_power(1e5, 1), 4, 0.2);

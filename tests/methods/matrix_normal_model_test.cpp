@@ -333,8 +333,9 @@ TEST(NoiseLeft, IsTheDiagonalOfTheInverse) {
   const Eigen::VectorXd precision = test::random_matrix(28, 1, 1).col(0).cwiseAbs2();
   const Eigen::MatrixXd system = dense(smoothing_system(Eigen::VectorXd::Ones(30), precision, 50));
 
-  EXPECT_LE((noise_left(precision, 50) - system.inverse().diagonal()).norm(),
-            test::tolerance::two_texts());
+  EXPECT_LE(
+      (noise_left(Eigen::VectorXd::Ones(30), precision, 50) - system.inverse().diagonal()).norm(),
+      test::tolerance::two_texts());
 }
 
 TEST(JointInnovations, AreWhatTheOthersDoNotPredict) {

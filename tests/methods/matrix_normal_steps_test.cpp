@@ -10,6 +10,7 @@
 
 #include "moclean/core/random.hpp"
 #include "moclean/methods/matrix_normal/deviation.hpp"
+#include "moclean/methods/matrix_normal/on_lengths.hpp"
 #include "moclean/methods/matrix_normal/reference.hpp"
 #include "moclean/methods/matrix_normal/reference_model.hpp"
 #include "moclean/methods/matrix_normal/reference_sigma.hpp"
@@ -106,6 +107,10 @@ std::vector<Case> cases() {
   all.push_back({"known beforehand", data, {}, prior_of(data)});
   all.push_back({"known beforehand, noisy", spoilt_walk(150, 12, 0.5, 8), {}, prior_of(data)});
   all.back().prior = prior_of(all.back().data);
+  data = spoilt_walk(120, 12, 0.3, 10);
+  all.push_back({"of different confidence", data, {}, prior_of(data)});
+  all.back().prior.confidence =
+      test::random_matrix(120, 12, 11).cwiseAbs().cwiseMin(1).cwiseMax(0.05);
   all.push_back({"joints of two columns", spoilt_walk(80, 7, 0.1, 9), {.joint_columns = 2}});
   all.push_back({"no joints", spoilt_walk(80, 9, 0.5, 9), {.joint_columns = 1}});
   all.push_back({"one step each", spoilt_walk(80, 9, 0.2, 9), {.soft_steps = 1, .hard_steps = 1}});
@@ -238,6 +243,7 @@ struct Estimate {
     state.sigma = noise;
     state.step = 1;
     state.weights = used.cast<double>();
+    state.confidence = Matrix::Ones(frames, columns);
     state.precision = device.precision;
     state.spectrum = model.spectrum;
   }
@@ -262,7 +268,10 @@ TEST(MatrixNormalDeviation, IsThatOfTheReference) {
     for (std::size_t k = 0; k < used.size(); ++k)
       for (const double noise : {1e-4, 0.03, 1.})
         for (const bool has_prior : {true, false}) {
-          const Estimate e(frames, columns, used[k], noise, has_prior, width);
+          Estimate e(frames, columns, used[k], noise, has_prior, width);
+          if (k == 0)
+            e.state.confidence = e.device.confidence =
+                test::random_matrix(frames, columns, 12).cwiseAbs().cwiseMax(0.05);
           Matrix expected = reference::deviation(e.state, e.device.motion, e.device.eigenvectors);
           Matrix stated = marginal_deviation(e.device);
           for (Index j = 0; j < columns; ++j)  // where the window leaves a column missing
@@ -277,9 +286,10 @@ TEST(MatrixNormalDeviation, IsThatOfTheReference) {
 TEST(MatrixNormalDeviation, HasThePartsOfTheReference) {
   const Eigen::VectorXd precision = test::random_matrix(58, 1, 1).col(0).cwiseAbs2();
   const Eigen::Vector3d ratios(1e-6, 1, 1e6);
-  const Matrix left = variance_left(ratios, precision);
+  const Matrix left = variance_left(ratios, precision, Eigen::VectorXd::Ones(precision.size() + 2));
   for (Index k = 0; k < 3; ++k)
-    expect_same(left.col(k), reference::noise_left(precision, ratios(k)), "noise left");
+    expect_same(left.col(k), reference::noise_left(Eigen::VectorXd::Ones(60), precision, ratios(k)),
+                "noise left");
 
   const Matrix half = test::random_matrix(9, 9, 1);
   const Matrix Q = half * half.transpose() + Matrix::Identity(9, 9);

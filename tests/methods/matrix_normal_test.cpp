@@ -8,6 +8,7 @@
 
 #include "moclean/core/error.hpp"
 #include "moclean/core/random.hpp"
+#include "moclean/methods/matrix_normal/on_lengths.hpp"
 #include "moclean/methods/matrix_normal/reference.hpp"
 #include "moclean/methods/matrix_normal/statistics.hpp"
 #include "moclean/methods/matrix_normal/window.hpp"
@@ -280,6 +281,27 @@ TEST(MatrixNormal, TakesShortAndNarrowAndWideAndConstantData) {
   EXPECT_EQ(reference::solve(zero, MatrixNormal{}).low_rank, zero);
   const Matrix unseen = Matrix::Constant(50, 9, nan);
   EXPECT_TRUE(reference::solve(unseen, MatrixNormal{}).low_rank.array().isNaN().all());
+}
+
+// The noise of half of the samples is five times that of the others.
+TEST(MatrixNormal, WeighsSamplesByTheirConfidence) {
+  const Matrix truth = test::synthetic_walk(300).samples.leftCols(24);
+  Matrix confidence = Matrix::Ones(300, 24);
+  for (Index i = 0; i < 300; ++i)
+    for (Index j = 0; j < 24; ++j)
+      if ((i * 7 + j / 3 * 5) % 11 < 5) confidence(i, j) = 1. / 25;
+  const Matrix noise = 0.05 * test::random_matrix(300, 24, 3).cwiseQuotient(confidence.cwiseSqrt());
+  const Matrix data = truth + noise;
+  const auto off = [&](const MotionPrior& prior) {
+    return (reference::solve(data, MatrixNormal{}, {}, prior).low_rank - truth).norm();
+  };
+
+  const double unweighed = off({});
+
+  EXPECT_LT(off({.confidence = confidence}), 0.75 * unweighed);
+  EXPECT_EQ(off({.confidence = Matrix::Ones(300, 24)}), unweighed);
+  // Only their ratios matter: sigma takes what they have in common.
+  EXPECT_NEAR(off({.confidence = 0.5 * confidence}) / off({.confidence = confidence}), 1, 0.02);
 }
 
 TEST(MatrixNormal, RefusesParametersOutOfRange) {

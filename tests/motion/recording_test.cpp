@@ -141,6 +141,18 @@ TEST(Cut, KeepsWhatTheRecordingIs) {
   EXPECT_EQ(part.up, UpAxis::y);
 }
 
+TEST(Recording, KeepsConfidencesWithTheSamplesTheyAreOf) {
+  Recording walk = walk_of_two();
+  walk.confidence = Matrix::Ones(walk.frames(), walk.samples.cols());
+  walk.confidence.row(2).setConstant(0.5);
+  walk.confidence.col(1).setConstant(0.1);
+
+  EXPECT_EQ(excerpt(walk, 1, 3).confidence, walk.confidence.bottomRows(2));
+  EXPECT_EQ(thinned(walk, 2).confidence.row(1), walk.confidence.row(2));
+  EXPECT_EQ(columns_of(walk, {1, 2}).confidence, walk.confidence.middleCols(1, 2));
+  EXPECT_EQ(like(walk, walk.samples).confidence.size(), 0);
+}
+
 TEST(Thinned, TakesEverySoManyFramesOfAll) {
   const Recording thin = thinned(walk_of_two(), 2);
 

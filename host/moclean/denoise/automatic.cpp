@@ -14,6 +14,7 @@
 #include "moclean/core/error.hpp"
 #include "moclean/core/parallel.hpp"
 #include "moclean/denoise/body_findings.hpp"
+#include "moclean/denoise/confidence_weights.hpp"
 #include "moclean/denoise/low_rank.hpp"
 #include "moclean/denoise/moving_part.hpp"
 #include "moclean/denoise/sample_status.hpp"
@@ -100,6 +101,7 @@ Prepared prepare(const Recording& take, const Automatic& method) {
   Prepared prepared{.samples = take.samples, .prior = {}, .bones = {}, .spans = {}};
   prepared.spans = windows(method, take.frames(), {});
   if (method.body == BodyRules::on && has_body(take)) look_at_body(rate_of(take), method, prepared);
+  if (method.confidence == Confidence::on) prepared.prior.confidence = confidence_weights(take);
   return prepared;
 }
 
@@ -111,6 +113,8 @@ MotionPrior excerpt(const MotionPrior& known, const Span& span) {
     part.positions = known.positions.middleRows(span.first, span.frames());
     part.variance = known.variance.middleRows(span.first, span.frames());
   }
+  if (known.confidence.size() > 0)
+    part.confidence = known.confidence.middleRows(span.first, span.frames());
   return part;
 }
 

@@ -21,6 +21,9 @@ enum class Rejection { automatic, off, gentle, on };
 /// Whether samples that are not rejected are smoothed, or pass through to the last bit.
 enum class Smoothing { on, off };
 
+/// Whether the confidence of samples weighs them, see confidence_weights().
+enum class Confidence { on, off };
+
 /// Cleaning without parameters to choose: matrix-normal smoothing
 /// (methods/matrix_normal/matrix_normal.hpp) of overlapping windows, told by the distances between
 /// joints which samples are wrong. Works on any columns; where all come in joints of three, the
@@ -39,6 +42,7 @@ struct Automatic {
   BodyRules body = BodyRules::on;
   Rejection reject = Rejection::automatic;
   Smoothing smooth = Smoothing::on;
+  Confidence confidence = Confidence::on;
 
   bool operator==(const Automatic&) const = default;
 
@@ -51,6 +55,7 @@ struct Automatic {
     visitor("body", self.body, choices);
     visitor("reject", self.reject, rejections);
     visitor("smooth", self.smooth, choices);
+    visitor("confidence", self.confidence, choices);
   }
 };
 

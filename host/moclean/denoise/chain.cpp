@@ -78,7 +78,10 @@ std::vector<Denoised> ChainDenoiser::denoise(std::span<const Recording> takes,
     };
 
   std::vector<Recording> cleaned;  // so far
-  for (const Recording& take : takes) cleaned.push_back(like(take, take.samples));
+  for (const Recording& take : takes) {
+    cleaned.push_back(like(take, take.samples));
+    cleaned.back().confidence = take.confidence;
+  }
   std::vector<Denoised> results(takes.size());
   for (const Step& step : chain_) {
     if (monitor.stop.stop_requested()) throw Cancelled();

@@ -117,7 +117,9 @@ MovingPart moving_part(const Recording& take, bool find_lost) {
   }
   part.columns = moving_columns(all, part.still);
   part.centre = centres(all, part);
-  part.clip = columns_of(like(take, std::move(samples)), part.columns);
+  Recording clip = like(take, std::move(samples));
+  clip.confidence = take.confidence;
+  part.clip = columns_of(clip, part.columns);
   for (Index p = 0; p < part.clip.samples.cols(); ++p)
     part.clip.samples.col(p).array() -= part.centre(part.columns[static_cast<std::size_t>(p)]);
   part.unit = unit_of(part.clip.samples);

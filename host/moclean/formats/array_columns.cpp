@@ -188,10 +188,12 @@ ArrayColumns of_points(const Shape& shape, const Matrix& numbers,
   ArrayColumns found;
   if (width == 3 && is_picture_with_confidence(numbers)) {
     found = points(columns, 3, 2);
-    found.notes.layout = points_text(columns, 3, 2, " and a confidence within 0 to 1") + where;
+    found.notes.layout =
+        points_text(columns, 3, 2, " and a confidence within 0 to 1, which weighs them") + where;
   } else if (width == 4 && is_confidence(numbers, 3, 4)) {
     found = points(columns, 4, 3);
-    found.notes.layout = points_text(columns, 4, 3, " and a confidence within 0 to 1") + where;
+    found.notes.layout =
+        points_text(columns, 4, 3, " and a confidence within 0 to 1, which weighs them") + where;
   } else if (width == 2 || width == 3) {
     found = points(columns, width, width);
     found.notes.layout = points_text(columns, width, width, where);

@@ -10,6 +10,7 @@
 
 #include "moclean/core/error.hpp"
 #include "moclean/formats/array_columns.hpp"
+#include "moclean/formats/confidence.hpp"
 #include "moclean/motion/framed_source.hpp"
 
 namespace moclean {
@@ -40,13 +41,16 @@ FramedSource source_of(const NpyArray& array, const ArrayColumns& columns,
   return {.file = std::move(document), .first = 0, .bytes = bytes};
 }
 
-void drop_untrusted(const Matrix& numbers, const ArrayColumns& columns, Matrix& samples) {
-  for (std::size_t c = 0; c < columns.samples.size(); ++c) {
-    if (columns.confidences[c] < 0) continue;
-    for (Index f = 0; f < numbers.rows(); ++f)
-      if (numbers(f, columns.confidences[c]) == 0)
-        samples(f, static_cast<Index>(c)) = std::numeric_limits<double>::quiet_NaN();
-  }
+// [frames x samples], NaN where points have none; nothing where none has.
+Matrix confidence_of(const Matrix& numbers, const ArrayColumns& columns) {
+  const auto has_one = [](Index confidence) { return confidence >= 0; };
+  if (std::ranges::none_of(columns.confidences, has_one)) return {};
+  Matrix confidence = Matrix::Constant(numbers.rows(), std::ssize(columns.samples),
+                                       std::numeric_limits<double>::quiet_NaN());
+  for (Index c = 0; c < confidence.cols(); ++c)
+    if (const Index own = columns.confidences[static_cast<std::size_t>(c)]; own >= 0)
+      confidence.col(c) = numbers.col(own);
+  return confidence;
 }
 
 // An array that is written again.
@@ -156,14 +160,15 @@ Recording recording_of(const NpyArray& array, const std::filesystem::path& file,
   Matrix numbers = numbers_of(array);
   ArrayColumns columns = columns_of_array(array.shape, numbers, file, options);
   recording.columns = columns.names;
-  recording.source = source_of(array, columns, options);
   recording.notes = std::move(columns.notes);
   if (static_cast<Index>(columns.samples.size()) == numbers.cols()) {
     recording.samples = std::move(numbers);
   } else {
     recording.samples = numbers(Eigen::all, columns.samples);
-    drop_untrusted(numbers, columns, recording.samples);
+    const bool are_used = take_confidence(confidence_of(numbers, columns), recording);
+    if (!are_used) std::ranges::fill(columns.confidences, -1);
   }
+  recording.source = source_of(array, columns, options);
   return recording;
 }
 

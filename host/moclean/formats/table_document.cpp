@@ -10,6 +10,7 @@
 
 #include "moclean/core/error.hpp"
 #include "moclean/formats/column_names.hpp"
+#include "moclean/formats/confidence.hpp"
 #include "moclean/formats/table_rows.hpp"
 #include "moclean/formats/table_times.hpp"
 #include "moclean/formats/text_lines.hpp"
@@ -49,7 +50,8 @@ class TableReader {
     recording.unit = shape.unit;
     recording.up = shape.up;
     recording.samples = std::move(rows.samples);
-    leave_unseen_out(rows, recording);
+    if (!rows.confidences.empty())
+      document_->uses_confidence = take_confidence(confidence_of(rows, recording), recording);
     rate(rows, recording);
     notes(recording);
     document_->frames = recording.frames();
@@ -139,15 +141,11 @@ class TableReader {
                                 cell.column + 1, excerpt(shape.roles.names[cell.column])));
   }
 
-  // Points of confidence 0 are missing; a confidence that is 0 everywhere says nothing.
-  void leave_unseen_out(const TableRows& rows, Recording& recording) {
-    if (rows.unseen.empty() || std::ranges::all_of(rows.unseen, [](auto is) { return is; })) {
-      if (!rows.unseen.empty())
-        recording.notes.warnings.push_back("every confidence is 0: they are not used");
-      return;
-    }
-    document_->uses_confidence = true;
+  // [frames x columns], NaN where points have none.
+  Matrix confidence_of(const TableRows& rows, const Recording& recording) const {
     const auto columns = document_->shape.roles.sample_columns();
+    Matrix confidence = Matrix::Constant(recording.frames(), recording.samples.cols(),
+                                         std::numeric_limits<double>::quiet_NaN());
     std::vector<std::pair<Index, Index>> segments;  // of points that have a confidence
     for (const ColumnPoint& point : document_->shape.roles.points)
       if (point.confidence)
@@ -156,10 +154,8 @@ class TableReader {
     std::size_t place = 0;
     for (Index f = 0; f < recording.frames(); ++f)
       for (const auto& [first, count] : segments)
-        if (rows.unseen[place++])
-          recording.samples.row(f)
-              .segment(first, count)
-              .setConstant(std::numeric_limits<double>::quiet_NaN());
+        confidence.row(f).segment(first, count).setConstant(rows.confidences[place++]);
+    return confidence;
   }
 
   void rate(const TableRows& rows, Recording& recording) {
@@ -199,6 +195,7 @@ class TableReader {
       notes.layout += ", as --columns says";
     else if (options_.layout != ColumnLayout::automatic)
       notes.layout += ", as --layout says";
+    if (document_->uses_confidence) notes.layout += "; weighed by their confidences";
     if (time_column_) {
       notes.layout += fmt::format("; time in column {}", *time_column_ + 1);
       if (!scale_.unit.empty()) notes.layout += fmt::format(" in {}", scale_.unit);

@@ -64,7 +64,7 @@ class RowReader {
     while (!rows_.stopped && lines_.next()) {
       if (is_no_row(lines_.line(), shape_.separator)) continue;
       samples_ = frames_.add(lines_.bytes_left());
-      rows_.unseen.resize(rows_.unseen.size() + confidences_);
+      rows_.confidences.resize(rows_.confidences.size() + confidences_);
       row();
     }
     if (frames_.count() == 0) fail("expected a line of samples, found the end of the file");
@@ -184,7 +184,7 @@ class RowReader {
 
   void accept(std::size_t column, double value) {
     if (uses_[column].kind == CellUse::Kind::confidence)
-      rows_.unseen[rows_.unseen.size() - confidences_ + uses_[column].place] = value == 0;
+      rows_.confidences[rows_.confidences.size() - confidences_ + uses_[column].place] = value;
     else if (uses_[column].kind == CellUse::Kind::time)
       time(column, value);
     else

@@ -23,7 +23,7 @@ struct UnreadableCell {
 struct TableRows {
   Matrix samples;                         ///< [frames x sample columns]
   std::vector<double> times;              ///< as the file has them; empty without a time column
-  std::vector<std::uint8_t> unseen;       ///< [frames x points with a confidence] that is 0
+  std::vector<double> confidences;        ///< [frames x points with a confidence]
   std::string missing_text;               ///< the first missing sample as the file spells it
   std::optional<UnreadableCell> stopped;  ///< at which the rest was left unread
 };

@@ -60,6 +60,7 @@ template <class Rows>
 Recording rows_of(const Recording& recording, const Rows& rows) {
   Recording part = like(recording, recording.samples(rows, Eigen::all));
   part.skeleton = recording.skeleton;
+  if (recording.confidence.size() > 0) part.confidence = recording.confidence(rows, Eigen::all);
   if (recording.channels.size() > 0) part.channels = recording.channels(rows, Eigen::all);
   part.source = recording.source;
   part.notes = recording.notes;
@@ -113,6 +114,7 @@ Recording like(const Recording& recording, Matrix samples) {
 
 Recording columns_of(const Recording& recording, const std::vector<Index>& columns) {
   Recording part = like(recording, recording.samples(Eigen::all, columns));
+  if (recording.confidence.size() > 0) part.confidence = recording.confidence(Eigen::all, columns);
   part.columns.clear();
   for (const Index c : columns)
     part.columns.push_back(recording.columns[static_cast<std::size_t>(c)]);

@@ -40,6 +40,11 @@ struct Recording {
   /// units, radians. It is not changed with the samples. 0 x 0 where the file has only positions.
   Matrix channels = {};
 
+  /// How sure a sample is, [frames x columns], above 0, of any scale: the variance of its noise is
+  /// taken for one over that. NaN: the file does not say. 0 x 0 where it says so of none. A sample
+  /// that its file has no confidence in at all (0) is missing.
+  Matrix confidence = {};
+
   /// What else the file's format keeps to write the same file again, of a type of the format's own
   /// (named in its header); empty where that is nothing.
   std::any source = {};
@@ -74,7 +79,7 @@ Recording excerpt(const Recording& recording, Index first, Index last);
 Recording thinned(const Recording& recording, Index every);
 
 /// Other samples under the names of a recording, at its rate and in its unit: something about it,
-/// not it, so without skeleton and source.
+/// not it, so without confidence, skeleton and source.
 Recording like(const Recording& recording, Matrix samples);
 
 /// Some columns of a recording; without skeleton and source, for joints may be missing.

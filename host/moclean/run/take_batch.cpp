@@ -11,7 +11,8 @@ std::uint64_t bytes_of(const Recording& take, std::uint64_t copies) {
   const auto* source = std::any_cast<FramedSource>(&take.source);
   const std::uint64_t others = source ? source->bytes : 0;
   return others + sizeof(double) * (copies * static_cast<std::uint64_t>(take.samples.size()) +
-                                    static_cast<std::uint64_t>(take.channels.size()));
+                                    static_cast<std::uint64_t>(take.channels.size()) +
+                                    static_cast<std::uint64_t>(take.confidence.size()));
 }
 
 std::uint64_t TakeBatch::bytes() const {

@@ -23,8 +23,10 @@ struct MotionPrior {
   double noise = 0;     ///< least sigma: noise that neighbouring frames share hides from them
   Mask confirmed = {};  ///< [frames x joints]: samples the links say are right; or empty
   std::vector<DistanceLink> links = {};
-  Matrix positions = {};  ///< [frames x columns]: where missing samples should be; or empty
-  Matrix variance = {};   ///< [frames x joints], of a column of that; infinite: not known
+  Matrix positions = {};   ///< [frames x columns]: where missing samples should be; or empty
+  Matrix variance = {};    ///< [frames x joints], of a column of that; infinite: not known
+  Matrix confidence = {};  ///< c, [frames x columns], above 0: the noise of a sample has the
+                           ///< variance sigma^2 / c; or empty: 1
 };
 
 }  // namespace moclean

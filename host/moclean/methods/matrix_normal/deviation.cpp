@@ -92,8 +92,20 @@ double learned_noise(const MotionEstimate& e) {
 Matrix noise_variance(const MotionEstimate& e) {
   const double noise = noise_of(e);
   if (noise == 0) return Matrix::Zero(e.motion.rows(), e.motion.cols());
-  const Matrix along = variance_left(noise * e.spectrum.cwiseInverse(), e.precision);
-  return learned_noise(e) * noise * along * e.eigenvectors.cwiseAbs2();
+  const Eigen::VectorXd ratios = noise * e.spectrum.cwiseInverse();
+  const Matrix shares = e.eigenvectors.cwiseAbs2();
+  if (e.confidence.size() == 0) {
+    const Matrix along = variance_left(ratios, e.precision, Eigen::VectorXd::Ones(e.motion.rows()));
+    return learned_noise(e) * noise * along * shares;
+  }
+  Matrix variance(e.motion.rows(), e.motion.cols());
+  Matrix along;
+  for (Index j = 0; j < variance.cols(); ++j) {
+    if (j == 0 || e.confidence.col(j) != e.confidence.col(j - 1))
+      along = variance_left(ratios, e.precision, e.confidence.col(j));
+    variance.col(j) = learned_noise(e) * noise * along * shares.col(j);
+  }
+  return variance;
 }
 
 // Q and R of the last step.
@@ -290,7 +302,8 @@ void add_doubt(const MotionEstimate& e, Matrix& variance) {
 
 }  // namespace
 
-Matrix variance_left(const Eigen::VectorXd& ratios, const Eigen::VectorXd& precision) {
+Matrix variance_left(const Eigen::VectorXd& ratios, const Eigen::VectorXd& precision,
+                     const Eigen::VectorXd& confidence) {
   const Index frames = precision.size() + 2, columns = ratios.size();
   const Row ratio = ratios.transpose();
   const auto at = [&](Index k) { return k >= 0 && k < precision.size() ? precision(k) : 0.; };
@@ -298,7 +311,7 @@ Matrix variance_left(const Eigen::VectorXd& ratios, const Eigen::VectorXd& preci
   Matrix inverse_pivot(frames, columns), first = Matrix::Zero(frames + 1, columns);
   Matrix second = Matrix::Zero(frames + 2, columns);
   for (Index i = 0; i < frames; ++i) {
-    Row pivot = 1 + ratio * (at(i) + 4 * at(i - 1) + at(i - 2));
+    Row pivot = confidence(i) + ratio * (at(i) + 4 * at(i - 1) + at(i - 2));
     Row next = -2 * (at(i - 1) + at(i - 2)) * ratio;
     if (i >= 2) {
       second.row(i) = at(i - 2) * ratio * inverse_pivot.row(i - 2).array();

@@ -13,6 +13,7 @@ struct MotionEstimate {
   Mask used;                  ///< samples that S was fitted to
   Matrix rejected;            ///< D - S of observed samples that S was not fitted to, else 0
   Matrix prior_variance;      ///< of what else is known of missing samples; infinite: nothing
+  Matrix confidence = {};     ///< c: samples have noise of variance sigma^2 / c; empty: 1
   Matrix eigenvectors;        ///< of Q, in rows [columns x columns]
   Eigen::VectorXd spectrum;   ///< eigenvalues of Q, its ridge included, above 0
   Eigen::VectorXd precision;  ///< of the accelerations, over Q's [frames - 2]
@@ -34,10 +35,11 @@ struct MotionEstimate {
 /// missing samples otherwise is joined by precision.
 Matrix marginal_deviation(const MotionEstimate& estimate);
 
-/// Diagonals of (1 + ratio Delta' P Delta)^-1 for every ratio of the variance of white noise to
-/// that of accelerations, [frames x ratios]: the share of the noise that smoothing leaves. P is the
-/// diagonal `precision` [frames - 2].
-Matrix variance_left(const Eigen::VectorXd& ratios, const Eigen::VectorXd& precision);
+/// Diagonals of (diag(c) + ratio Delta' P Delta)^-1 for every ratio of the variance of white noise
+/// to that of accelerations, [frames x ratios]: the share of the noise that smoothing leaves. P is
+/// the diagonal `precision` [frames - 2], c the confidence of the samples [frames].
+Matrix variance_left(const Eigen::VectorXd& ratios, const Eigen::VectorXd& precision,
+                     const Eigen::VectorXd& confidence);
 
 /// Variance of each column's acceleration given those in use, [columns], for columns not in use;
 /// else 0. `Q` is the covariance of accelerations, `R` its inverse.

@@ -11,10 +11,11 @@ namespace moclean {
 /// from the data itself, and a scale in every frame; samples have normal noise of deviation sigma,
 /// and gross errors:
 ///   minimise  sum W_ij (D_ij - S_ij)^2 / (2 v_ij) + tr(P Delta S Q^-1 (Delta S)') / 2
-/// where W is 0 for missing and rejected samples, and P diagonal. Q, P, sigma and W follow from S
-/// and S from them, in turn: first `soft_steps` with Geman-McClure weights of a falling threshold
-/// and P = 1, then `hard_steps` with rejection and an evidence update (MacKay 1992) of Q, P and
-/// sigma. No singular values of the data are taken. Lengths scale: c D has the motion c S.
+/// where W is 0 for missing and rejected samples, and P diagonal; v is sigma^2 over the confidence
+/// of the sample (MotionPrior), 1 where nothing is known of it. Q, P, sigma and W follow from S and
+/// S from them, in turn: first `soft_steps` with Geman-McClure weights of a falling threshold and P
+/// = 1, then `hard_steps` with rejection and an evidence update (MacKay 1992) of Q, P and sigma. No
+/// singular values of the data are taken. Lengths scale: c D has the motion c S.
 ///
 /// Missing samples (NaN) are filled. A column without any sample comes out as NaN.
 struct MatrixNormal {

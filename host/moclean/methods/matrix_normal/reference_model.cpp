@@ -96,7 +96,8 @@ Eigen::VectorXd precisions(const SmoothingState& s, const ConstMatrixRef& S, con
 // Squared residuals over their predictive variance, at least the median of their joint's.
 Matrix energies(const SmoothingState& s, const ConstMatrixRef& S) {
   const Matrix h = harmonic_distance(s.weights.array() > in_use, ends);
-  const Matrix variance = squared(s.sigma) + (h * s.predictive.asDiagonal()).array() / 6;
+  const Matrix variance =
+      squared(s.sigma) / s.confidence.array() + (h * s.predictive.asDiagonal()).array() / 6;
   Matrix energy = s.observed.select((s.data - S).cwiseAbs2().cwiseQuotient(variance), 0);
   for (Index i = 0; i < s.frames(); ++i)
     for (Index j = 0; j < s.columns(); j += s.method->joint_columns) {
@@ -157,6 +158,8 @@ SmoothingState begin(const ConstMatrixRef& data, const MatrixNormal& method,
   s.confirmed = Mask::Constant(s.frames(), s.columns(), false);
   for (Index j = 0; j < s.columns() && prior.confirmed.size() > 0; ++j)
     s.confirmed.col(j) = prior.confirmed.col(j / method.joint_columns);
+  s.confidence = Matrix::Ones(s.frames(), s.columns());
+  if (prior.confidence.size() > 0) s.confidence = prior.confidence;
   expect_positions(s);
   if (method.joint_columns == 3 && s.columns() % 3 == 0 && s.observed.any())
     s.nearness = of_columns(nearness_of(filled(s)));
@@ -256,8 +259,9 @@ Terms weigh(SmoothingState& s, const ConstMatrixRef& motion, const Matrix& R) {
   s.precision = precisions(s, S, R);
   s.weights = sample_weights(s, energies(s, S));
   Terms terms{s.weights, s.data};
-  for (Index j = 0; j < s.columns(); ++j)
-    terms.weights.col(j) /= squared(s.sigma) + (s.hard() ? 0 : s.predictive(j) / 6);
+  for (Index i = 0; i < s.frames(); ++i)
+    for (Index j = 0; j < s.columns(); ++j)
+      terms.weights(i, j) /= s.variance(i, j) + (s.hard() ? 0 : s.predictive(j) / 6);
   const auto exact = [](const DistanceLink& link) { return link.exact; };
   if (s.hard() && std::ranges::any_of(s.prior->links, exact)) build_on_lengths(s, S, terms);
   for (Index i = 0; i < s.frames(); ++i)
@@ -275,7 +279,7 @@ void estimate_noise(SmoothingState& s, const ConstMatrixRef& S) {
   std::vector<double> residuals;
   for (Index i = 0; i < s.frames(); ++i)
     for (Index j = 0; j < s.columns(); ++j) {
-      const double r = std::abs(s.data(i, j) - S(i, j));
+      const double r = std::abs(s.data(i, j) - S(i, j)) * std::sqrt(s.confidence(i, j));
       const double near = 3 * std::sqrt(squared(s.sigma) + s.predictive(j) / 6);
       if (s.hard() ? s.weights(i, j) > 0 : s.observed(i, j) && r < near) residuals.push_back(r);
     }

@@ -25,6 +25,7 @@ struct SmoothingState {
   Matrix data;             ///< D; where missing samples should be, as far as known, else 0
   Mask observed;           ///< samples that were not NaN
   Mask confirmed;          ///< samples that are right
+  Matrix confidence;       ///< c: the noise of a sample has the variance sigma^2 / c
   Matrix prior_variance;   ///< of what is known of missing samples; infinite: nothing
   Matrix prior_share;      ///< of the precision with which that counts
   Matrix nearness;         ///< of columns, [columns x columns]; empty where they are no joints
@@ -41,7 +42,8 @@ struct SmoothingState {
   Index frames() const { return data.rows(); }
   Index columns() const { return data.cols(); }
   bool hard() const { return step >= method->soft_steps; }
-  double share_kept() const { return std::max(weights.mean(), 1e-3); }
+  double share_kept() const { return std::max(weights.cwiseProduct(confidence).mean(), 1e-3); }
+  double variance(Index i, Index j) const { return sigma * sigma / confidence(i, j); }
 };
 
 /// `data` is [frames x columns], NaN where missing. `method` and `prior` outlive the state.

@@ -47,8 +47,16 @@ double learned_from_noise(const SmoothingState& s, const Findings& f) {
 Matrix variance_by_noise(const SmoothingState& s, const Findings& f, const Matrix& Z) {
   Matrix variance = Matrix::Zero(s.frames(), s.columns());
   if (f.noise == 0) return variance;
-  for (Index k = 0; k < s.columns(); ++k)
-    variance += noise_left(s.precision, f.noise / s.spectrum(k)) * Z.row(k).cwiseAbs2();
+  if ((s.confidence.array() == 1).all()) {
+    const Eigen::VectorXd ones = Eigen::VectorXd::Ones(s.frames());
+    for (Index k = 0; k < s.columns(); ++k)
+      variance += noise_left(ones, s.precision, f.noise / s.spectrum(k)) * Z.row(k).cwiseAbs2();
+  } else {
+    for (Index j = 0; j < s.columns(); ++j)
+      for (Index k = 0; k < s.columns(); ++k)
+        variance.col(j) += noise_left(s.confidence.col(j), s.precision, f.noise / s.spectrum(k)) *
+                           squared(Z(k, j));
+  }
   return learned_from_noise(s, f) * f.noise * variance;
 }
 
@@ -182,9 +190,9 @@ void add_doubt(const SmoothingState& s, const Matrix& rejected, Matrix& variance
 
 }  // namespace
 
-Eigen::VectorXd noise_left(const Eigen::VectorXd& precision, double ratio) {
-  BandMatrix system =
-      smoothing_system(Eigen::VectorXd::Ones(precision.size() + 2), precision, ratio);
+Eigen::VectorXd noise_left(const Eigen::VectorXd& confidence, const Eigen::VectorXd& precision,
+                           double ratio) {
+  BandMatrix system = smoothing_system(confidence, precision, ratio);
   factor(system);
   const BandMatrix inverse = inverse_in_band(system);
   Eigen::VectorXd diagonal(precision.size() + 2);

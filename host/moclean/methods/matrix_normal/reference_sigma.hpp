@@ -14,8 +14,10 @@ namespace moclean::reference {
 /// rows of Z. NaN where there was no step.
 Matrix deviation(const SmoothingState& state, const ConstMatrixRef& S, const Matrix& Z);
 
-/// Diagonal of (1 + ratio Delta' P Delta)^-1, [frames]: what smoothing leaves of white noise.
-Eigen::VectorXd noise_left(const Eigen::VectorXd& precision, double ratio);
+/// Diagonal of (diag(c) + ratio Delta' P Delta)^-1, [frames]: what smoothing leaves of white noise
+/// of the variance 1 / c.
+Eigen::VectorXd noise_left(const Eigen::VectorXd& confidence, const Eigen::VectorXd& precision,
+                           double ratio);
 
 /// Variance of every column's acceleration given those in use, for columns that are not, else 0:
 /// the diagonal of the inverse of R among them.

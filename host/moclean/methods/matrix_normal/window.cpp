@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "moclean/core/order_statistics.hpp"
 #include "moclean/methods/matrix_normal/acceleration_scale.hpp"
 #include "moclean/methods/matrix_normal/deviation.hpp"
+#include "moclean/methods/matrix_normal/on_lengths.hpp"
 #include "moclean/methods/matrix_normal/prior.hpp"
 #include "moclean/methods/matrix_normal/rounding_step.hpp"
 #include "moclean/methods/matrix_normal/statistics.hpp"
@@ -60,6 +60,8 @@ MatrixNormalWindow::MatrixNormalWindow(const ConstMatrixRef& data, const MatrixN
   least_noise_ = std::max(rounding_deviation(data), prior_->noise);
   sigma_ = std::max({dense_noise_level(data), least_noise_, soft_floor_share * noise_floor_});
   weights_ = observed_;
+  confidence_ =
+      prior.confidence.size() > 0 ? prior.confidence : Matrix::Ones(frames_, columns()).eval();
   precision_ = Eigen::VectorXd::Ones(rows);
   precision_.tail(std::min<Index>(rows, 2)).setZero();
   find_prior_samples();
@@ -137,7 +139,9 @@ Matrix MatrixNormalWindow::accelerations(const ConstMatrixRef& motion) const {
   return a;
 }
 
-double MatrixNormalWindow::share_kept() const { return std::max(weights_.mean(), 1e-3); }
+double MatrixNormalWindow::share_kept() const {
+  return std::max(weights_.cwiseProduct(confidence_).mean(), 1e-3);
+}
 
 double MatrixNormalWindow::least_spectrum() const {
   const double least = hard() ? 1e-5 * spectrum_.mean() : 1e-9 * spectrum_.maxCoeff();
@@ -183,7 +187,8 @@ Matrix MatrixNormalWindow::energies(const ConstMatrixRef& motion) const {
   Matrix energy = gap_distance(weights_);
   for (Index i = 0; i < frames_; ++i)
     for (Index j = 0; j < columns(); ++j) {
-      const double variance = square(sigma_) + energy(i, j) * predictive_(j) / 6;
+      const double variance =
+          square(sigma_) / confidence_(i, j) + energy(i, j) * predictive_(j) / 6;
       energy(i, j) = observed_(i, j) * square(data_(i, j) - motion(i, j)) / variance;
     }
   raise_to_joint_median(energy, method_->joint_columns);
@@ -229,7 +234,8 @@ void MatrixNormalWindow::weigh_softly(const Matrix& energy) {
     for (Index j = 0; j < columns(); ++j) {
       weights_(i, j) = confirmed(i, j) ? observed_(i, j)
                                        : observed_(i, j) / square(1 + energy(i, j) / square(limit));
-      solve_weights_(i, j) = weights_(i, j) / (square(sigma_) + predictive_(j) / 6);
+      solve_weights_(i, j) =
+          weights_(i, j) / (square(sigma_) / confidence_(i, j) + predictive_(j) / 6);
     }
 }
 
@@ -238,7 +244,7 @@ void MatrixNormalWindow::weigh_hard(const Matrix& energy, const ConstMatrixRef& 
   for (Index j = 0; j < columns(); ++j)
     for (Index i = 0; i < frames_; ++i) good(i, j) = good(i, j) || confirmed(i, j);
   weights_ = good.select(observed_, 0);
-  solve_weights_.topRows(frames_) = weights_ / square(sigma_);
+  solve_weights_.topRows(frames_) = weights_.cwiseProduct(confidence_) / square(sigma_);
   const bool exact = std::ranges::any_of(prior_->links, [](const auto& l) { return l.exact; });
   if (exact) build_on_lengths(motion);
 }
@@ -268,14 +274,15 @@ void MatrixNormalWindow::build_on_lengths(const ConstMatrixRef& motion) {
     }
 }
 
-// Magnitudes of the residuals that tell the noise.
+// Magnitudes of the residuals that tell the noise, as samples of confidence 1 would have them.
 std::vector<double> MatrixNormalWindow::residuals(const ConstMatrixRef& motion) const {
   const Eigen::VectorXd near = near_deviations * (square(sigma_) + predictive_.array() / 6).sqrt();
+  const Matrix scale = confidence_.cwiseSqrt();
   std::vector<double> found(static_cast<std::size_t>(weights_.size()));
   std::size_t count = 0;
   for (Index i = 0; i < frames_; ++i)
     for (Index j = 0; j < columns(); ++j) {
-      const double r = std::abs(data_(i, j) - motion(i, j));
+      const double r = std::abs(data_(i, j) - motion(i, j)) * scale(i, j);
       const bool counts = hard() ? weights_(i, j) > 0 : observed_(i, j) > 0 && r < near(j);
       found[count] = r;  // written over by the next if it does not count: no branch
       count += counts;
@@ -352,6 +359,7 @@ Matrix MatrixNormalWindow::deviation(const ConstMatrixRef& motion,
                                       .used = trusted(),
                                       .rejected = rejected(motion.topRows(frames_)),
                                       .prior_variance = std::move(prior),
+                                      .confidence = prior_->confidence,
                                       .eigenvectors = eigenvectors,
                                       .spectrum = spectrum_,
                                       .precision = precision_.head(frames_ - 2),
@@ -362,32 +370,6 @@ Matrix MatrixNormalWindow::deviation(const ConstMatrixRef& motion,
                                       .has_prior = nearness_.size() > 0});
   leave_unobserved(result);
   return result;
-}
-
-Mask put_on_lengths(const std::vector<DistanceLink>& links, const Mask& free, Matrix& positions) {
-  constexpr int sweeps = 5;
-  Mask moved = Mask::Constant(free.rows(), free.cols(), false);
-  std::vector<DistanceLink> exact;
-  std::ranges::copy_if(links, std::back_inserter(exact), &DistanceLink::exact);
-  const auto fit = [&](Index i, const DistanceLink& link) {
-    const int ends = free(i, link.first) + free(i, link.second);
-    if (ends == 0) return;
-    auto a = positions.row(i).segment<3>(3 * link.first);
-    auto b = positions.row(i).segment<3>(3 * link.second);
-    const Eigen::RowVector3d way = a - b;
-    const double length = std::max(way.norm(), std::numeric_limits<double>::min());
-    const Eigen::RowVector3d step = (1 - link.length / length) / ends * way;
-    if (free(i, link.first)) a -= step;
-    if (free(i, link.second)) b += step;
-    moved(i, link.first) = moved(i, link.first) || free(i, link.first);
-    moved(i, link.second) = moved(i, link.second) || free(i, link.second);
-  };
-  for (Index i = 0; i < free.rows(); ++i) {
-    if (!free.row(i).any()) continue;
-    for (int sweep = 0; sweep < sweeps; ++sweep)
-      for (const DistanceLink& link : exact) fit(i, link);
-  }
-  return moved;
 }
 
 }  // namespace moclean

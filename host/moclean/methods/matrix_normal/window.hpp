@@ -128,6 +128,7 @@ class MatrixNormalWindow {
   double noise_floor_, least_noise_;  // least sigma: of the data's size, and what rounding makes
   double sigma_;
   int step_ = 0;
+  Matrix confidence_;                        // c: the variance of a sample's noise is sigma^2 / c
   Matrix weights_, solve_weights_, target_;  // W [frames x columns], W / v, D or a prior
   bool target_changed_ = true;
   Eigen::VectorXd precision_;              // [rows]
@@ -143,10 +144,5 @@ inline constexpr double least_preconditioner_weight = 1e-9;
 /// 1 / (1 + noise / power (2 - 2 cos w)^2), which is Re (1 + 4 i sqrt(noise / power))^-1/2, that is
 /// sqrt((1 + 1 / q) / 2 q) with q = sqrt(1 + 16 noise / power).
 double kept_power(double noise, double power);
-
-/// Moves the joints that are free (`free` is [frames x joints]) along their exact links until the
-/// lengths fit, a few Gauss-Seidel sweeps; returns which have such a link, [frames x joints].
-/// `positions` is [frames x 3 joints].
-Mask put_on_lengths(const std::vector<DistanceLink>& links, const Mask& free, Matrix& positions);
 
 }  // namespace moclean
