@@ -99,6 +99,22 @@ TEST_F(TableHeads, OfMotiveWithoutMarkersHaveBodiesForPoints) {
   EXPECT_EQ(recording.frame_rate, 50);
 }
 
+// Motive 3 exports the time code, under which nothing stands.
+TEST_F(TableHeads, OfMotiveMayHaveATimeCode) {
+  const std::string text =
+      "Format Version,1.24,Take Name,x,Export Frame Rate,120,Length Units,Centimeters\n\n"
+      ",Type,,Marker,Marker,Marker\n,Name,,LED,LED,LED\n,ID,,\"4C\",\"4C\",\"4C\"\n"
+      ",,,Position,Position,Position\nFrame,Time (Seconds),TimeCode,X,Y,Z\n"
+      "0,0.000000,15:26:46:12.02,-92.5,311.25,134.125\n";
+
+  const Recording recording = read("a.csv", text);
+
+  EXPECT_THAT(recording.columns, ElementsAre("LED.x", "LED.y", "LED.z"));
+  EXPECT_EQ(recording.unit, "cm");
+  EXPECT_THAT(recording.notes.passed_through, ElementsAre("Frame", "Time (Seconds)", "TimeCode"));
+  EXPECT_EQ(write("b.csv", recording), text);
+}
+
 TEST_F(TableHeads, OfMotiveThatBreakOffAreRefusedByLine) {
   expect_failure("a.csv", "Format Version,1.2,Export Frame Rate,fast\n",
                  "a.csv:1: expected a frame rate in Hz, found 'fast'");
@@ -147,6 +163,21 @@ TEST_F(TableHeads, OfNexusAreFoundBehindOtherTablesAndWithCommasAtTheEnds) {
 
   EXPECT_EQ(recording.samples, (Matrix{{1, 2, 3}}));
   EXPECT_EQ(write("b.csv", recording), text);
+}
+
+// As Vicon Workstation exported them.
+TEST_F(TableHeads, OfWorkstationHaveATitle) {
+  const std::string text =
+      "Title\nDate:\nTime:\nType:\nDescription:,\"\"\nNotes:,\"\"\n\nTRAJECTORIES\n100,Hz\n"
+      ",LFHD,,,C7,,\nField #,X,Y,Z,X,Y,Z\n1,1.5,2,3,4,5,6\n2,1.6,2,3,,,\n";
+  Recording recording = read("a.csv", text);
+
+  EXPECT_THAT(recording.columns, ElementsAre("LFHD.x", "LFHD.y", "LFHD.z", "C7.x", "C7.y", "C7.z"));
+  EXPECT_EQ(recording.frame_rate, 100);
+  EXPECT_EQ(recording.frames(), 2);
+  EXPECT_EQ(write("b.csv", recording), text);
+  recording.frame_rate = 50;
+  EXPECT_EQ(write("b.csv", recording), replaced(text, "100,Hz", "50,Hz"));
 }
 
 TEST_F(TableHeads, OfNexusWithoutTrajectoriesAreRefused) {
@@ -204,9 +235,25 @@ TEST_F(TableHeads, OfQtmSayAnotherCountAndRate) {
                 "1\t2\t3\t4\t5\t6.0\n");
 }
 
+// Angles and the like that QTM calculates from markers: channels under a line of names.
+TEST_F(TableHeads, OfQtmMayHoldResultsOfCalculations) {
+  const std::string text =
+      "NO_OF_FRAMES\t2\r\nNO_OF_DATA_TYPES\t1\r\nFREQUENCY\t100\r\nDATA_INCLUDED\tAngle\r\n"
+      "DATA_TYPES\tleft_q1\r\n\r\nFrame\tTime\tleft_q1_XY\t\r\n1\t0.00000\t79.301\r\n"
+      "2\t0.01000\t79.305\r\n";
+
+  const Recording recording = read("a.tsv", text);
+
+  EXPECT_THAT(recording.columns, ElementsAre("left_q1_XY"));
+  EXPECT_EQ(recording.samples, (Matrix{{79.301}, {79.305}}));
+  EXPECT_EQ(recording.unit, "");
+  EXPECT_EQ(recording.frame_rate, 100);
+  EXPECT_EQ(write("b.tsv", recording), text);
+}
+
 TEST_F(TableHeads, OfQtmThatHoldNoMarkersAreRefused) {
   expect_failure("a.tsv", replaced(qtm_head, "D\t3D", "D\t6D") + "1\t2\t3\t4\t5\t6\n",
-                 "a.tsv:9: expected positions (DATA_INCLUDED 3D), found '6D'");
+                 "a.tsv:9: expected positions of markers (DATA_INCLUDED 3D), found '6D'");
   expect_failure("a.tsv", "NO_OF_FRAMES\t1\nFREQUENCY\t100\n1\t2\t3\n",
                  "a.tsv:3: expected MARKER_NAMES above the rows, found none");
   expect_failure("a.tsv", qtm_head, "expected rows of samples, found the end of the file");
@@ -283,9 +330,66 @@ TEST_F(TableHeads, OfOlderOpenSimHaveBlanksForTabs) {
   EXPECT_EQ(write("b.mot", recording), text);
 }
 
+TEST_F(TableHeads, OfOpenSimMayHaveGoneThroughASpreadsheet) {
+  const std::string text =
+      "Coordinates,,,\nnRows=2,,,\ninDegrees=yes,,,\n,,,\nendheader,,,\n"
+      "time,thorax_tilt,thorax_tx,elbow\n0,1.5,2,3\n0.01,1.6,2,3\n";
+  const Recording recording = read("a.mot", text);
+
+  EXPECT_THAT(recording.columns, ElementsAre("thorax_tilt", "thorax_tx", "elbow"));
+  EXPECT_EQ(recording.frame_rate, 100);
+  EXPECT_EQ(write("b.mot", recording), text);
+  EXPECT_EQ(write("b.mot", excerpt(recording, 0, 1)),
+            replaced(replaced(text, "nRows=2", "nRows=1"), "0.01,1.6,2,3\n", ""));
+}
+
+// One point among joint angles is no reason to leave these out.
+TEST_F(TableHeads, OfOpenSimHaveChannelsWhereMostAreNoPoints) {
+  const std::string head = "x\nendheader\n";
+
+  EXPECT_THAT(
+      read("a.mot", head + "time\thip\tknee\tankle\tbox_transX\tbox_transY\tbox_transZ\tlist\n"
+                           "0\t1\t2\t3\t4\t5\t6\t7\n")
+          .columns,
+      ElementsAre("hip", "knee", "ankle", "box_transX", "box_transY", "box_transZ", "list"));
+  EXPECT_THAT(read("a.sto", head + "time\ta_x\ta_y\ta_z\n0\t1\t2\t3\n").columns,
+              ElementsAre("a.x", "a.y", "a.z"));
+}
+
+const std::string marker_sto =
+    "DataRate=100.000000\nDataType=Vec3\nUnits=mm\nversion=3\nOpenSimVersion=4.1\nendheader\n"
+    "time\tL.ASIS\tC7\n0\t1.5,2,3\t-4,5,6e2\n0.01\t1.6,2,3\tnan,nan,nan\n";
+
+TEST_F(TableHeads, OfOpenSimMayHaveAVectorInACell) {
+  Recording recording = read("a.sto", marker_sto);
+
+  EXPECT_THAT(recording.columns,
+              ElementsAre("L.ASIS.x", "L.ASIS.y", "L.ASIS.z", "C7.x", "C7.y", "C7.z"));
+  EXPECT_TRUE(same_bits(recording.samples, Matrix{{1.5, 2, 3, -4, 5, 600},
+                                                  {1.6, 2, 3, test::nan, test::nan, test::nan}}));
+  EXPECT_EQ(recording.frame_rate, 100);
+  EXPECT_EQ(recording.unit, "mm");
+
+  EXPECT_EQ(write("b.sto", recording), marker_sto);
+  recording.samples.row(1) << 1.6, test::nan, 3, 7, 8.25, 9;
+  EXPECT_EQ(write("b.sto", recording),
+            replaced(marker_sto, "1.6,2,3\tnan,nan,nan", "1.6,nan,3\t7,8.25,9"));
+}
+
+TEST_F(TableHeads, OfOpenSimWithVectorsAreRefusedByLine) {
+  EXPECT_EQ(read("a.sto", "DataType=Vec3\nendheader\ntime\ta\n0\t1:2:3\n").samples,
+            (Matrix{{1, 2, 3}}));
+  expect_failure("a.sto", replaced(marker_sto, "nan,nan,nan", "nan,nan"),
+                 "a.sto:9: expected 7 columns, found 6");
+  expect_failure("a.sto", replaced(marker_sto, "-4,5", "-4,five"),
+                 "a.sto:8: expected a number, found 'five' in column 6 ('C7.y')");
+  expect_failure("a.sto", "DataType=Vec3\nendheader\ntime\n0\n",
+                 "expected names of markers behind time, found none");
+}
+
 TEST_F(TableHeads, OfOpenSimThatHoldNoNumbersAreRefused) {
-  expect_failure("a.sto", "x\nDataType=Vec3\nversion=3\nendheader\ntime\ta\n0\t1,2,3\n",
-                 "a.sto:2: expected DataType=double, a number per cell, found 'Vec3'");
+  expect_failure("a.sto", "x\nDataType=Quaternion\nendheader\ntime\ta\n0\t1,0,0,0\n",
+                 "a.sto:2: expected DataType=double or Vec3, found 'Quaternion'");
   expect_failure("a.sto", "time\ta\n0\t1\n",
                  "expected a head that ends with a line endheader, found none");
   expect_failure("a.mot", "x\nendheader\n", "expected a line of column names, found the end");

@@ -56,16 +56,18 @@ std::string_view without_unit(std::string_view name) {
 }
 
 constexpr std::array<std::string_view, 17> place_words = {
-    "position", "positions", "pos", "coordinate", "coordinates", "coord", "coords", "location",
-    "loc",      "3d",        "2d",  "trans",      "translation", "p3d",   "kp",     "world",
-    "xyz"};
+    "position",    "positions", "pos", "coordinate", "coordinates", "coord",
+    "coords",      "location",  "loc", "3d",         "2d",          "trans",
+    "translation", "p3d",       "kp",  "world",      "xyz"};
 
-// `_pos` of `hip_pos`, `.position` of `hip.position`: a last word that only says that it is a place.
+// `_pos` of `hip_pos`, `.position` of `hip.position`: a last word that only says that it is a
+// place.
 std::string_view place_remark(std::string_view name) {
   const std::size_t begin = name.find_last_of("._- :/");
   if (begin == std::string_view::npos || begin == 0) return {};
   const std::string word = in_lower_case(name.substr(begin + 1));
-  const bool is_known = std::find(place_words.begin(), place_words.end(), word) != place_words.end();
+  const bool is_known =
+      std::find(place_words.begin(), place_words.end(), word) != place_words.end();
   return is_known ? name.substr(begin) : std::string_view();
 }
 
@@ -147,8 +149,8 @@ std::vector<AxisName> axis_names(std::string_view full_name) {
   std::vector<AxisName> found;
   const auto add = [&](NameStyle style, char joint, std::string_view point, char letter) {
     // Of `hip - x` or `hip, x` the point is `hip`.
-    const std::size_t begin = std::min(point.find_first_not_of("._- :/,"), point.size());
-    const std::size_t end = point.find_last_not_of("._- :/,") + 1;
+    const std::size_t begin = std::min(point.find_first_not_of("._- :/,;"), point.size());
+    const std::size_t end = point.find_last_not_of("._- :/,;") + 1;
     if (begin < end) point = point.substr(begin, end - begin);
     const std::string_view remark = place_remark(point);  // of `hip_pos_x`
     point.remove_suffix(remark.size());

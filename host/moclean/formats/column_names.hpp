@@ -25,9 +25,9 @@ enum class NameStyle {
 /// One reading of a column's name as a coordinate of a point.
 struct AxisName {
   NameStyle style = NameStyle::suffix;
-  char joint = 0;     ///< the character between point and letter, 0 if there is none
-  std::string point;  ///< empty if the name has only the letter
-  char axis = 'x';    ///< x, y or z, or w (of quaternions, and of boxes)
+  char joint = 0;           ///< the character between point and letter, 0 if there is none
+  std::string point;        ///< empty if the name has only the letter
+  char axis = 'x';          ///< x, y or z, or w (of quaternions, and of boxes)
   std::string remark = {};  ///< that it is a position, `_pos` of `hip_pos_x`, `_3d` of `hip_x_3d`
 };
 

@@ -224,7 +224,7 @@ class RoleFinder {
   std::vector<bool> is_taken_;
   std::set<std::size_t> left_out_;
   std::unordered_map<std::size_t, std::string> remarks_;  // of the points that begin with a column
-  std::vector<std::string> stems_;  // of the points, in lower case
+  std::vector<std::string> stems_;                        // of the points, in lower case
 };
 
 }  // namespace

@@ -100,7 +100,10 @@ class MotiveHead {
     std::vector<std::string> names = {axes_[0], axes_[1]};
     for (std::size_t c = 2; c < width; ++c)
       names.push_back(fmt::format("{} {} {}", label("name", c), properties_[c], axes_[c]));
-    for (std::string& name : names) name.erase(name.find_last_not_of(' ') + 1);
+    for (std::string& name : names) {
+      name.erase(name.find_last_not_of(' ') + 1);
+      name.erase(0, name.find_first_not_of(' '));  // TimeCode has nothing above it
+    }
     TablePoints markers(names), bodies(names);
     for (TablePoints* points : {&markers, &bodies}) {
       points->set(0, ColumnRole::index);

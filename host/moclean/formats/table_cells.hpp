@@ -59,6 +59,7 @@ class TableCells {
 
   std::string_view text() const { return text_; }  ///< without quotes; doubled ones stay doubled
   bool is_quoted() const { return is_quoted_; }
+  const char* after() const { return raw_end_; }  ///< the end of the cell: a separator, or the end
 
   /// The cell with its quotes, without the blanks around it; of an empty one, where it stands.
   std::string_view raw() const {

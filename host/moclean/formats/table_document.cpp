@@ -20,7 +20,8 @@ namespace moclean {
 namespace {
 
 TableShape shape_of(const TableText& table) {
-  for (auto* const recognise : {motive_shape, nexus_shape, qtm_shape, pose_shape, storage_shape})
+  for (auto* const recognise :
+       {motive_shape, nexus_shape, qtm_shape, pose_shape, storage_shape, levels_shape})
     if (auto shape = recognise(table)) return *std::move(shape);
   return plain_shape(table);
 }
@@ -41,6 +42,8 @@ class TableReader {
   Recording read() {
     TableShape& shape = document_->shape;
     shape = shape_of({text(), file_, document_->extension, options_});
+    if (options_.columns.empty())
+      refuse_long_table({text(), file_, document_->extension, options_}, shape);
     state_columns(shape);
     Recording recording;
     end_behind_last_row(shape, recording.notes.warnings);
@@ -147,6 +150,7 @@ class TableReader {
       return;
     }
     document_->uses_confidence = true;
+    document_->least_confidence = rows.least_confidence > 0 ? rows.least_confidence : 1;
     const auto columns = document_->shape.roles.sample_columns();
     std::vector<std::pair<Index, Index>> segments;  // of points that have a confidence
     for (const ColumnPoint& point : document_->shape.roles.points)
@@ -167,8 +171,14 @@ class TableReader {
     const auto time = std::ranges::find(shape.roles.roles, ColumnRole::time);
     if (time != shape.roles.roles.end()) {
       time_column_ = static_cast<std::size_t>(time - shape.roles.roles.begin());
-      scale_ = time_scale(rows.times, shape.roles.names[*time_column_]);
+      // Clock times are in seconds whatever the column is called.
+      const std::string& name = shape.roles.names[*time_column_];
+      scale_ = time_scale(rows.times, rows.are_clock_times ? "time (s)" : name);
     }
+    if (rows.repeated_times > 0)
+      recording.notes.warnings.push_back(fmt::format("{} frame{} the time of the one before",
+                                                     rows.repeated_times,
+                                                     rows.repeated_times == 1 ? " has" : "s have"));
     recording.frame_rate = shape.rate > 0 ? shape.rate : scale_.rate;
     const double found = recording.frame_rate;
     auto& warnings = recording.notes.warnings;

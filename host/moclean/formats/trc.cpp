@@ -22,13 +22,6 @@ bool is_same_word(std::string_view a, std::string_view b) {
   return std::ranges::equal(a, b, [](char x, char y) { return (x | 0x20) == (y | 0x20); });
 }
 
-std::vector<std::string_view> cells_of(std::string_view line) {
-  std::vector<std::string_view> found;
-  for (TrcCells cells(line); cells.next();) found.push_back(cells.cell());
-  while (!found.empty() && found.back().empty()) found.pop_back();  // tabs at the end of the line
-  return found;
-}
-
 // What a Time column is worth: its seconds, and how far they may be off for being printed with few
 // decimals.
 struct Times {
@@ -91,24 +84,28 @@ class TrcParser {
   void expect_line(std::string_view what) {
     do
       if (!lines_.next()) fail(fmt::format("expected {}, found the end of the file", what));
-    while (lines_.is_blank());
+    while (is_trc_blank(lines_.line()));
   }
 
   void path_line() {
     expect_line("PathFileType");
-    const std::vector<std::string_view> cells = cells_of(lines_.line());
-    if (!is_same_word(cells[0], "PathFileType"))
+    const std::vector<std::string_view> cells = trc_cells(lines_.line());
+    // Also with blanks before the 4, as in files of OpenSim's own examples.
+    const std::string_view word = cells[0].substr(0, cells[0].find(' '));
+    if (!is_same_word(word, "PathFileType"))
       fail(fmt::format("expected PathFileType, found {}", excerpt(cells[0])));
-    for (const std::string_view cell : cells)
+    for (std::string_view cell : cells) {
+      cell = cell.substr(0, cell.find(' '));  // the path may follow in the same cell
       if (cell.starts_with('(') && cell.find('/') != cell.npos && !is_same_word(cell, "(X/Y/Z)"))
         fail(fmt::format("expected coordinates (X/Y/Z), found {}", excerpt(cell)));
+    }
   }
 
   void settings() {
     expect_line("a line with DataRate, NumFrames, NumMarkers, Units");
-    const std::vector<std::string_view> names = cells_of(lines_.line());
+    const std::vector<std::string_view> names = trc_cells(lines_.line());
     expect_line("the values of DataRate, NumFrames, NumMarkers, Units");
-    const std::vector<std::string_view> values = cells_of(lines_.line());
+    const std::vector<std::string_view> values = trc_settings(lines_.line(), names.size());
     bool has_rate = false;
     for (std::size_t i = 0; i < names.size(); ++i) {
       const std::string_view value = i < values.size() ? values[i] : std::string_view();
@@ -133,7 +130,7 @@ class TrcParser {
 
   void markers() {
     expect_line("Frame#, Time and the markers");
-    const std::vector<std::string_view> cells = cells_of(lines_.line());
+    const std::vector<std::string_view> cells = trc_cells(lines_.line());
     if (cells.size() < 3 || !cells[0].starts_with("Frame") || !is_same_word(cells[1], "Time"))
       fail(fmt::format("expected Frame#, Time and the markers, found {}", excerpt(lines_.line())));
     for (std::size_t c = 2; c < cells.size(); ++c) {
@@ -150,7 +147,7 @@ class TrcParser {
   void coordinate_labels() {
     expect_line("X1, Y1, Z1 ...");
     std::size_t count = 0;
-    for (const std::string_view cell : cells_of(lines_.line())) {
+    for (const std::string_view cell : trc_cells(lines_.line())) {
       if (cell.empty()) continue;
       if ((cell[0] & ~0x20) != coordinates[count++ % coordinates.size()])
         fail(fmt::format("expected X1, Y1, Z1 ..., found {}", excerpt(cell)));
@@ -167,7 +164,7 @@ class TrcParser {
     rows_line_ = lines_.number();
     RowCollector frames(static_cast<Index>(recording_.columns.size()));
     do
-      if (!lines_.is_blank()) row(frames.add(lines_.bytes_left()));
+      if (!is_trc_blank(lines_.line())) row(frames.add(lines_.bytes_left()));
     while (lines_.next());
     recording_.samples = frames.take();
   }
