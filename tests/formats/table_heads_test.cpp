@@ -1,18 +1,14 @@
 // Tables of programs that have a head of their own: small ones as each program writes them.
 #include <gmock/gmock.h>
 
-#include "moclean/core/error.hpp"
-#include "moclean/formats/file.hpp"
-#include "moclean/formats/read_write.hpp"
-
-#include "formats/temporary_folder.hpp"
-#include "formats/tiny_files.hpp"
+#include "formats/named_tables.hpp"
 #include "support/matrix.hpp"
 #include "support/nan.hpp"
 
 namespace moclean {
 namespace {
 
+using test::replaced;
 using test::same_bits;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -20,28 +16,7 @@ using testing::IsEmpty;
 using testing::IsSupersetOf;
 using testing::ThrowsMessage;
 
-class TableHeads : public testing::Test {
- protected:
-  Recording read(const std::string& name, std::string_view text) {
-    return read_recording(folder_.file(name, text));
-  }
-
-  std::string write(const std::string& name, const Recording& recording) {
-    write_recording(folder_.path() / name, recording);
-    return read_file(folder_.path() / name);
-  }
-
-  void expect_failure(const std::string& name, std::string_view text, const std::string& message) {
-    EXPECT_THAT([&] { read(name, text); }, ThrowsMessage<FileError>(HasSubstr(message)));
-  }
-
-  test::TemporaryFolder folder_;
-};
-
-std::string replaced(std::string text, std::string_view from, std::string_view to) {
-  const std::size_t place = text.find(from);
-  return place == text.npos ? "does not occur" : text.replace(place, from.size(), to);
-}
+class TableHeads : public test::NamedTables {};
 
 // Two labelled markers, a rigid body with its own, and a bone.
 const std::string motive_csv =
@@ -115,6 +90,19 @@ TEST_F(TableHeads, OfMotiveMayHaveATimeCode) {
   EXPECT_EQ(write("b.csv", recording), text);
 }
 
+TEST_F(TableHeads, OfMotiveHaveMeasuredMarkersBeforeExpectedOnes) {
+  const std::string text =
+      "Format Version,1.23,Export Frame Rate,50,Length Units,Meters\n\n"
+      ",Type,Rigid Body Marker,Rigid Body Marker,Rigid Body Marker,Rigid Body Marker,Marker,Marker,"
+      "Marker\n,Name,R:M1,R:M1,R:M1,R:M1,R:M1,R:M1,R:M1\n,ID,1,1,1,1,2,2,2\n"
+      ",,Position,Position,Position,Marker Quality,Position,Position,Position\n"
+      "Frame,Time,X,Y,Z,,X,Y,Z\n0,0,1,2,3,1,4,5,6\n";
+
+  EXPECT_EQ(read("a.csv", text).samples, (Matrix{{4, 5, 6}}));
+  EXPECT_EQ(read("a.csv", replaced(text, "Marker,Marker,Marker\n", "Bone,Bone,Bone\n")).samples,
+            (Matrix{{1, 2, 3}}));
+}
+
 TEST_F(TableHeads, OfMotiveThatBreakOffAreRefusedByLine) {
   expect_failure("a.csv", "Format Version,1.2,Export Frame Rate,fast\n",
                  "a.csv:1: expected a frame rate in Hz, found 'fast'");
@@ -163,6 +151,7 @@ TEST_F(TableHeads, OfNexusAreFoundBehindOtherTablesAndWithCommasAtTheEnds) {
 
   EXPECT_EQ(recording.samples, (Matrix{{1, 2, 3}}));
   EXPECT_EQ(write("b.csv", recording), text);
+  EXPECT_EQ(write("b.txt", read("a.txt", text)), text);
 }
 
 // As Vicon Workstation exported them.
@@ -201,7 +190,7 @@ TEST_F(TableHeads, OfQtmAreReadWithAndWithoutFrameTimeAndNames) {
 
   for (const std::string& text : {qtm_head + rows, qtm_head + timed, qtm_head + names + rows,
                                   qtm_head + "Frame\tTime\t" + names + timed}) {
-    for (const char* name : {"a.tsv", "a.csv"}) {
+    for (const char* name : {"a.tsv", "a.csv", "a.txt"}) {
       const Recording recording = read(name, text);
       EXPECT_THAT(recording.columns, ElementsAre("L heel.x", "L heel.y", "L heel.z", "R heel.x",
                                                  "R heel.y", "R heel.z"));
@@ -300,99 +289,6 @@ TEST_F(TableHeads, OfAniposeAndMediaPipeAreNames) {
   EXPECT_THAT(read("a.csv", mediapipe).columns,
               ElementsAre("LEFT_HIP.x", "LEFT_HIP.y", "LEFT_HIP.z"));
   EXPECT_NEAR(read("a.csv", mediapipe).frame_rate, 30, 0.2);
-}
-
-TEST_F(TableHeads, OfOpenSimHaveChannels) {
-  const std::string text(test::tiny_mot);
-  Recording recording = read("a.mot", text);
-
-  EXPECT_THAT(recording.columns, ElementsAre("hip_flexion", "knee_angle"));
-  EXPECT_TRUE(same_bits(recording.samples, Matrix{{10.5, 20}, {11.5, test::nan}, {12.5, 24}}));
-  EXPECT_EQ(recording.frame_rate, 100);
-  EXPECT_THAT(recording.notes.layout, HasSubstr("OpenSim storage, angles in degrees: 2 channels"));
-  EXPECT_EQ(write("b.mot", recording), text);
-  recording.samples(1, 1) = 22;
-  EXPECT_EQ(write("b.mot", recording), replaced(text, "nan", "22"));
-  EXPECT_EQ(write("b.mot", excerpt(recording, 0, 1)),
-            replaced(text.substr(0, text.find("0.01")), "nRows=3", "nRows=1"));
-}
-
-TEST_F(TableHeads, OfOlderOpenSimHaveBlanksForTabs) {
-  const std::string text =
-      "name old.mot\ndatacolumns 4\ndatarows 2\nrange 0 0.1\nendheader\n"
-      "   time  ground_force_vx  ground_force_px   torque_y\n"
-      "   0.00\t  1.5   2  3\n   0.10\t  4     5  6\n";
-
-  const Recording recording = read("a.mot", text);
-
-  EXPECT_EQ(recording.samples, (Matrix{{1.5, 2, 3}, {4, 5, 6}}));
-  EXPECT_EQ(recording.frame_rate, 10);
-  EXPECT_EQ(write("b.mot", recording), text);
-}
-
-TEST_F(TableHeads, OfOpenSimMayHaveGoneThroughASpreadsheet) {
-  const std::string text =
-      "Coordinates,,,\nnRows=2,,,\ninDegrees=yes,,,\n,,,\nendheader,,,\n"
-      "time,thorax_tilt,thorax_tx,elbow\n0,1.5,2,3\n0.01,1.6,2,3\n";
-  const Recording recording = read("a.mot", text);
-
-  EXPECT_THAT(recording.columns, ElementsAre("thorax_tilt", "thorax_tx", "elbow"));
-  EXPECT_EQ(recording.frame_rate, 100);
-  EXPECT_EQ(write("b.mot", recording), text);
-  EXPECT_EQ(write("b.mot", excerpt(recording, 0, 1)),
-            replaced(replaced(text, "nRows=2", "nRows=1"), "0.01,1.6,2,3\n", ""));
-}
-
-// One point among joint angles is no reason to leave these out.
-TEST_F(TableHeads, OfOpenSimHaveChannelsWhereMostAreNoPoints) {
-  const std::string head = "x\nendheader\n";
-
-  EXPECT_THAT(
-      read("a.mot", head + "time\thip\tknee\tankle\tbox_transX\tbox_transY\tbox_transZ\tlist\n"
-                           "0\t1\t2\t3\t4\t5\t6\t7\n")
-          .columns,
-      ElementsAre("hip", "knee", "ankle", "box_transX", "box_transY", "box_transZ", "list"));
-  EXPECT_THAT(read("a.sto", head + "time\ta_x\ta_y\ta_z\n0\t1\t2\t3\n").columns,
-              ElementsAre("a.x", "a.y", "a.z"));
-}
-
-const std::string marker_sto =
-    "DataRate=100.000000\nDataType=Vec3\nUnits=mm\nversion=3\nOpenSimVersion=4.1\nendheader\n"
-    "time\tL.ASIS\tC7\n0\t1.5,2,3\t-4,5,6e2\n0.01\t1.6,2,3\tnan,nan,nan\n";
-
-TEST_F(TableHeads, OfOpenSimMayHaveAVectorInACell) {
-  Recording recording = read("a.sto", marker_sto);
-
-  EXPECT_THAT(recording.columns,
-              ElementsAre("L.ASIS.x", "L.ASIS.y", "L.ASIS.z", "C7.x", "C7.y", "C7.z"));
-  EXPECT_TRUE(same_bits(recording.samples, Matrix{{1.5, 2, 3, -4, 5, 600},
-                                                  {1.6, 2, 3, test::nan, test::nan, test::nan}}));
-  EXPECT_EQ(recording.frame_rate, 100);
-  EXPECT_EQ(recording.unit, "mm");
-
-  EXPECT_EQ(write("b.sto", recording), marker_sto);
-  recording.samples.row(1) << 1.6, test::nan, 3, 7, 8.25, 9;
-  EXPECT_EQ(write("b.sto", recording),
-            replaced(marker_sto, "1.6,2,3\tnan,nan,nan", "1.6,nan,3\t7,8.25,9"));
-}
-
-TEST_F(TableHeads, OfOpenSimWithVectorsAreRefusedByLine) {
-  EXPECT_EQ(read("a.sto", "DataType=Vec3\nendheader\ntime\ta\n0\t1:2:3\n").samples,
-            (Matrix{{1, 2, 3}}));
-  expect_failure("a.sto", replaced(marker_sto, "nan,nan,nan", "nan,nan"),
-                 "a.sto:9: expected 7 columns, found 6");
-  expect_failure("a.sto", replaced(marker_sto, "-4,5", "-4,five"),
-                 "a.sto:8: expected a number, found 'five' in column 6 ('C7.y')");
-  expect_failure("a.sto", "DataType=Vec3\nendheader\ntime\n0\n",
-                 "expected names of markers behind time, found none");
-}
-
-TEST_F(TableHeads, OfOpenSimThatHoldNoNumbersAreRefused) {
-  expect_failure("a.sto", "x\nDataType=Quaternion\nendheader\ntime\ta\n0\t1,0,0,0\n",
-                 "a.sto:2: expected DataType=double or Vec3, found 'Quaternion'");
-  expect_failure("a.sto", "time\ta\n0\t1\n",
-                 "expected a head that ends with a line endheader, found none");
-  expect_failure("a.mot", "x\nendheader\n", "expected a line of column names, found the end");
 }
 
 }  // namespace

@@ -98,11 +98,57 @@ TEST(LongTables, AreRefusedWithAWordHowToMakeColumnsOfPoints) {
                  "tiny.csv:4: expected a row per frame", rate);
 }
 
+// Whatever the column is called that tells rows of one frame apart, if it has text.
+TEST(LongTables, AreKnownByRowsOfOneFrame) {
+  const ReadOptions rate{.skeleton = {}, .rate = 30};
+  expect_refusal("part,x,y,frame\nnose,1,2,0\nnose,1,2,1\near,1,2,0\near,1,2,1\n",
+                 "tiny.csv:4: expected a row per frame, found a row per point, which column 1 "
+                 "('part') names",
+                 rate);
+  expect_refusal("time,who,a_x,a_y,b_x,b_y,c_x,c_y\n0,A,1,2,3,4,5,6\n0,B,1,2,3,4,5,6\n",
+                 "column 2 ('who')", rate);
+  expect_refusal(
+      "track,frame_idx,score,a.x,a.y,b.x,b.y,c.x,c.y\n"
+      "0,0,1,1,2,3,4,5,6\n1,0,1,1,2,3,4,5,6\n",
+      "column 1 ('track')", rate);
+  expect_refusal("frame,marker,axis,value\n0,A,x,1\n0,A,y,2\n", "column 3 ('axis')", rate);
+  expect_refusal("frame,speed\n0,1\n0,2\n", "expected a frame after 0, found 0");
+}
+
 TEST(LongTables, AreNotThoseOfOnePointAloneOrOfWideOnes) {
   EXPECT_EQ(table("frame,keypoint,x,y\n0,nose,1,2\n1,nose,3,4\n").frames(), 2);
   EXPECT_EQ(table("frame,label,x,y\n0,walk,1,2\n1,run,3,4\n").frames(), 2);
   EXPECT_EQ(table("track,a_x,a_y,b_x,b_y,c_x,c_y\n1,1,2,3,4,5,6\n2,1,2,3,4,5,6\n").frames(), 2);
   EXPECT_EQ(table("point,x,y\n7,1,2\n8,3,4\n", {.skeleton = {}, .columns = "oxy"}).frames(), 2);
+}
+
+TEST(TextTables, AreThoseOfNumpy) {
+  const std::string numbers = "1.500000000000000000e+00 2.000000000000000000e+00 nan\n4 5 6\n";
+  const std::string named = "# A.x A.y A.z\n" + numbers;
+  const auto read = [](const std::string& text, const ReadOptions& options = {}) {
+    const test::TemporaryFolder folder;
+    return read_recording(folder.file("a.txt", text), options);
+  };
+  const Recording recording = read(named);
+
+  EXPECT_THAT(recording.columns, ElementsAre("A.x", "A.y", "A.z"));
+  EXPECT_TRUE(same_bits(recording.samples, Matrix{{1.5, 2, test::nan}, {4, 5, 6}}));
+  EXPECT_EQ(written_again(recording, "a.txt"), named);
+  EXPECT_EQ(written_again(recording, "a.csv"), "A.x,A.y,A.z\n1.5,2,nan\n4,5,6\n");
+  EXPECT_THAT([&] { read(numbers); },
+              ThrowsMessage<FileError>(HasSubstr("a.txt:1: expected a line of column names")));
+  EXPECT_EQ(read(numbers, {.skeleton = {}, .layout = ColumnLayout::points3}).columns[0],
+            "point1.x");
+}
+
+TEST(TextTables, MayHaveANameOverTheAxesOfItsPoint) {
+  EXPECT_THAT(table("mass_A\nt\tx\ty\n0.00\t1\t2\n0.01\t3\t4\n").columns,
+              ElementsAre("mass_A.x", "mass_A.y"));
+}
+
+TEST(TextTables, OfOtherRecordingsHaveTabs) {
+  EXPECT_EQ(written_again({Matrix{{1, 2}}, {"A.x", "A.y"}, 50, "mm"}, "a.txt"),
+            "# frame_rate: 50\n# unit: mm\nA.x\tA.y\n1\t2\n");
 }
 
 TEST(TableNumbers, OfInfiniteSizeAreRefusedByLine) {

@@ -236,6 +236,21 @@ TEST(Trc, ReadsBlanksAndSecondTabsInTheHead) {
   EXPECT_EQ(written(recording), text);
 }
 
+// Markers that Cortex calculates have names, and columns in rows, but are not counted.
+TEST(Trc, ReadsVirtualMarkersBehindThoseThatAreCounted) {
+  const std::string head =
+      "PathFileType\t4\t(X/Y/Z)\tx.trc\nDataRate\tNumFrames\tNumMarkers\tUnits\n100\t1\t1\tmm\n"
+      "Frame#\tTime\tA\t\t\tV_A\t\t\n\t\tX1\tY1\tZ1\n\n";
+
+  const Recording both = parse_trc(head + "1\t0.00\t1\t2\t3\t4\t5\t6\n", "tiny.trc");
+  EXPECT_EQ(both.samples, (Matrix{{1, 2, 3, 4, 5, 6}}));
+  EXPECT_EQ(written(both), head + "1\t0.00\t1\t2\t3\t4\t5\t6\n");
+  EXPECT_THAT(parse_trc(head + "1\t0.00\t1\t2\t3\n", "tiny.trc").columns,
+              ElementsAre("A.x", "A.y", "A.z"));
+  const std::string labelled = replaced(head, "\tZ1\n", "\tZ1\tX2\tY2\tZ2\n");
+  EXPECT_EQ(parse_trc(labelled + "1\t0.00\t1\t2\t3\t\t\t\n", "tiny.trc").samples.cols(), 6);
+}
+
 TEST(Trc, ReadsCommasWhereASpreadsheetWroteThem) {
   const std::string text =
       "PathFileType,4,(X/Y/Z),/a b/c.trc,\nDataRate,NumFrames,NumMarkers,Units,\n100,2,2,mm,\n"

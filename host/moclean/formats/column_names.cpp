@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <unordered_set>
 
 namespace moclean {
 namespace {
@@ -49,10 +50,11 @@ std::string_view without_unit(std::string_view name) {
   name = without_blanks(name);
   const auto parts = bracketed(name);
   if (parts && is_unit(parts->inside)) return parts->before;
-  for (const std::string_view unit : {"_mm", "_cm", "_px", " mm", " cm"})
-    if (name.size() > unit.size() && in_lower_case(name).ends_with(unit))
-      return name.substr(0, name.size() - unit.size());
-  return name;
+  constexpr std::size_t length = 3;
+  if (name.size() <= length) return name;
+  const std::string_view rest = name.substr(0, name.size() - length);
+  const std::string ending = in_lower_case(name.substr(rest.size()));
+  return is_one_of(ending, {"_mm", "_cm", "_px", " mm", " cm"}) ? rest : name;
 }
 
 constexpr std::array<std::string_view, 17> place_words = {
@@ -194,32 +196,32 @@ std::vector<AxisName> axis_names(std::string_view full_name) {
 
 NamedQuantity named_quantity(std::string_view name) {
   const std::string text = squeezed(name);
-  if (is_one_of(text, {"time",        "t",
-                       "times",       "timestamp",
-                       "timestamps",  "timesec",
-                       "timesecs",    "timeseconds",
-                       "times",       "timems",
-                       "timemsec",    "timemilliseconds",
-                       "timeus",      "timens",
-                       "tms",         "tsec",
-                       "seconds",     "secs",
-                       "sec",         "milliseconds",
-                       "ms",          "msec",
-                       "unixtime",    "unixtimestamp",
-                       "epoch",       "epochms",
-                       "timestampms", "timestamps",
-                       "timestampus", "timestampns",
-                       "elapsed",     "elapsedtime",
-                       "zeit",        "temps",
-                       "tiempo",      "relativetime",
-                       "capturetime", "recordingtime",
-                       "datetime",    "clock",
-                       "clocktime",   "timeofday",
-                       "localtime",   "timelocal",
-                       "utc",         "utctime",
-                       "timeutc",     "timestamputc",
-                       "systemtime",  "isotime"}))
-    return NamedQuantity::time;
+  static const std::unordered_set<std::string_view> times = {"time",        "t",
+                                                             "times",       "timestamp",
+                                                             "timestamps",  "timesec",
+                                                             "timesecs",    "timeseconds",
+                                                             "times",       "timems",
+                                                             "timemsec",    "timemilliseconds",
+                                                             "timeus",      "timens",
+                                                             "tms",         "tsec",
+                                                             "seconds",     "secs",
+                                                             "sec",         "milliseconds",
+                                                             "ms",          "msec",
+                                                             "unixtime",    "unixtimestamp",
+                                                             "epoch",       "epochms",
+                                                             "timestampms", "timestamps",
+                                                             "timestampus", "timestampns",
+                                                             "elapsed",     "elapsedtime",
+                                                             "zeit",        "temps",
+                                                             "tiempo",      "relativetime",
+                                                             "capturetime", "recordingtime",
+                                                             "datetime",    "clock",
+                                                             "clocktime",   "timeofday",
+                                                             "localtime",   "timelocal",
+                                                             "utc",         "utctime",
+                                                             "timeutc",     "timestamputc",
+                                                             "systemtime",  "isotime"};
+  if (times.contains(text)) return NamedQuantity::time;
   if (is_one_of(text, {"frame", "frames", "frameindex", "frameidx", "frameid", "framenumber",
                        "framenum", "frameno", "frame#", "framenr", "fnum", "framecount", "fno"}))
     return NamedQuantity::frame;

@@ -89,6 +89,9 @@ char separator_between(std::string_view names, const std::vector<std::string_vie
       most = own;
     }
   if (best) return best;
+  // A name alone may stand over `t x y`.
+  const bool are_names = rows.size() > 1 && !is_number_cell(rows[0].substr(0, rows[0].find('\t')));
+  if (are_names && count_cells(rows[0], '\t') > 1) return '\t';
   const std::string_view row = rows.empty() ? std::string_view() : rows[0];
   const std::size_t words = count_cells(names, between_words);
   const std::size_t cells = count_cells(row, between_words);

@@ -130,6 +130,7 @@ class TrcParser {
 
   void markers() {
     expect_line("Frame#, Time and the markers");
+    markers_line_ = lines_.number();
     const std::vector<std::string_view> cells = trc_cells(lines_.line());
     if (cells.size() < 3 || !cells[0].starts_with("Frame") || !is_same_word(cells[1], "Time"))
       fail(fmt::format("expected Frame#, Time and the markers, found {}", excerpt(lines_.line())));
@@ -139,8 +140,7 @@ class TrcParser {
         recording_.columns.push_back(std::string(cells[c]).append(axis));
     }
     const std::size_t found = recording_.columns.size() / 3;
-    if (stated_markers_ && *stated_markers_ < static_cast<double>(found))
-      fail(fmt::format("expected {} markers (NumMarkers), found {}", *stated_markers_, found));
+    has_virtual_ = stated_markers_ && *stated_markers_ < static_cast<double>(found);
     has_unnamed_ = stated_markers_ && *stated_markers_ > static_cast<double>(found);
   }
 
@@ -153,9 +153,28 @@ class TrcParser {
         fail(fmt::format("expected X1, Y1, Z1 ..., found {}", excerpt(cell)));
     }
     const std::size_t named = recording_.columns.size();
+    if (has_virtual_) {
+      virtual_markers(count);
+      return;
+    }
     if (count < named || (count > named && !has_unnamed_))
       fail(fmt::format("expected X, Y, Z of the {} markers above, found {} cells", named / 3,
                        count));
+  }
+
+  // Cortex does not count markers in NumMarkers, and in some versions not in the labels, that it
+  // has calculated from others. Rows may have them or not.
+  void virtual_markers(std::size_t labels) {
+    const std::size_t named = recording_.columns.size();
+    if (labels != named && static_cast<double>(labels) != 3 * *stated_markers_)
+      throw FileError(
+          file_, markers_line_,
+          fmt::format("expected {} markers (NumMarkers), found {}", *stated_markers_, named / 3));
+    TextLines row = lines_;
+    while (row.next() && is_trc_blank(row.line())) {
+    }
+    if (labels != named && trc_cells(row.line()).size() <= labels + 2)
+      recording_.columns.resize(labels);
   }
 
   void rows() {
@@ -239,8 +258,8 @@ class TrcParser {
   TextLines lines_;
   Recording recording_;
   std::optional<double> stated_markers_;
-  bool has_unnamed_ = false;
-  std::size_t rate_line_ = 0, rows_begin_ = 0, rows_line_ = 0;
+  bool has_unnamed_ = false, has_virtual_ = false;
+  std::size_t markers_line_ = 0, rate_line_ = 0, rows_begin_ = 0, rows_line_ = 0;
   Times times_;
   std::optional<double> column_rate_;  // that DataRate and Time agree on
 };
