@@ -231,11 +231,11 @@ INSTANTIATE_TEST_SUITE_P(
         Refused{"SkeletonOutput",
                 {"walk.csv", "clean.bvh"},
                 2,
-                "own skeleton, expected .c3d, .trc, .csv, .tsv, .mot, .sto, .npy or .npz"},
+                "own skeleton, expected .c3d, .trc, .csv, .tsv, .txt, .mot, .sto, .npy or .npz"},
         Refused{"OutputWithoutExtension",
                 {"walk.csv", "clean"},
                 2,
-                "expected .bvh, .amc, .c3d, .trc, .csv, .tsv, .mot, .sto, .npy or .npz"},
+                "expected .bvh, .amc, .c3d, .trc, .csv, .tsv, .txt, .mot, .sto, .npy or .npz"},
         Refused{"NoFolderForOutput", {"walk.csv", "none/clean.csv"}, 1, "there is no folder"},
         Refused{"FileAsFolder", {"walk.csv", "walk.csv/"}, 2, "is a file"}),
     [](const auto& test) { return test.param.name; });

@@ -50,16 +50,16 @@ TEST(Formats, AreFoundByExtensionInAnyCase) {
     EXPECT_EQ(format_of("a.b" + std::string(format->extension)), format);
     EXPECT_EQ(format_of("folder.d/take" + upper), format);
   }
-  for (const char* other : {"take.txt", "take", ".bvh", "take.bvh.gz", ""})
+  for (const char* other : {"take.text", "take", ".bvh", "take.bvh.gz", ""})
     EXPECT_EQ(format_of(other), nullptr) << other;
 }
 
 TEST(Formats, AreListedForHelpTextsAndForSentences) {
-  EXPECT_EQ(listed_extensions(can_read), ".bvh .amc .c3d .trc .csv .tsv .mot .sto .npy .npz");
+  EXPECT_EQ(listed_extensions(can_read), ".bvh .amc .c3d .trc .csv .tsv .txt .mot .sto .npy .npz");
   EXPECT_EQ(any_extension(can_read),
-            ".bvh, .amc, .c3d, .trc, .csv, .tsv, .mot, .sto, .npy or .npz");
+            ".bvh, .amc, .c3d, .trc, .csv, .tsv, .txt, .mot, .sto, .npy or .npz");
   EXPECT_EQ(any_extension(can_write),
-            ".bvh, .amc, .c3d, .trc, .csv, .tsv, .mot, .sto, .npy or .npz");
+            ".bvh, .amc, .c3d, .trc, .csv, .tsv, .txt, .mot, .sto, .npy or .npz");
   EXPECT_EQ(any_extension([](const Format& format) { return format.name == "BVH"; }), ".bvh");
   EXPECT_THAT(any_extension([](const Format&) { return false; }), IsEmpty());
 }
@@ -117,6 +117,7 @@ class EachReadable : public testing::Test {
     folder_.file("tiny.trc", test::tiny_trc);
     folder_.file("tiny.csv", test::tiny_csv);
     folder_.file("tiny.tsv", test::tiny_csv);
+    folder_.file("tiny.txt", test::tiny_csv);
     folder_.file("tiny.mot", test::tiny_mot);
     folder_.file("tiny.sto", test::tiny_mot);
     write_recording(folder_.path() / "tiny.npy", {Matrix{{1, 2, 3}}, {"a", "b", "c"}, 120, "mm"});

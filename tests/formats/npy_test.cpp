@@ -184,7 +184,7 @@ TEST(NpyAgain, PassesConfidencesThroughAndTakesPointsWithoutAnyForMissing) {
   EXPECT_THAT(take.notes.passed_through, ElementsAre("joint0 confidence"));
   EXPECT_EQ(rewritten(file, nothing), file);  // 4, 5, 6 stay though they are not trusted
   EXPECT_EQ(rewritten(file, [](Recording& all) { all.samples.row(1) << 7, 8, 9; }),
-            head + bytes<double>({1, 2, 3, 0.5, 7, 8, 9, 0}));
+            head + bytes<double>({1, 2, 3, 0.5, 7, 8, 9, 0.5}));
 }
 
 TEST(NpyAgain, DoesNotUseConfidencesThatAreAlwaysZero) {

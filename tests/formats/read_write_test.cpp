@@ -32,7 +32,7 @@ TEST(ReadRecording, ChoosesTheFormatByExtensionInAnyCase) {
 TEST(ReadRecording, NamesTheExtensionsItReads) {
   const TemporaryFolder folder;
 
-  for (const char* name : {"x.txt", "x", "x.asf", ".bvh"})
+  for (const char* name : {"x.text", "x", "x.asf", ".bvh"})
     EXPECT_THAT([&] { read_recording(folder.file(name, "")); },
                 ThrowsMessage<FileError>(
                     AllOf(HasSubstr(name), HasSubstr("expected a file ending in .bvh, .amc"))));

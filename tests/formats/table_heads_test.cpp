@@ -1,18 +1,14 @@
 // Tables of programs that have a head of their own: small ones as each program writes them.
 #include <gmock/gmock.h>
 
-#include "moclean/core/error.hpp"
-#include "moclean/formats/file.hpp"
-#include "moclean/formats/read_write.hpp"
-
-#include "formats/temporary_folder.hpp"
-#include "formats/tiny_files.hpp"
+#include "formats/named_tables.hpp"
 #include "support/matrix.hpp"
 #include "support/nan.hpp"
 
 namespace moclean {
 namespace {
 
+using test::replaced;
 using test::same_bits;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -20,28 +16,7 @@ using testing::IsEmpty;
 using testing::IsSupersetOf;
 using testing::ThrowsMessage;
 
-class TableHeads : public testing::Test {
- protected:
-  Recording read(const std::string& name, std::string_view text) {
-    return read_recording(folder_.file(name, text));
-  }
-
-  std::string write(const std::string& name, const Recording& recording) {
-    write_recording(folder_.path() / name, recording);
-    return read_file(folder_.path() / name);
-  }
-
-  void expect_failure(const std::string& name, std::string_view text, const std::string& message) {
-    EXPECT_THAT([&] { read(name, text); }, ThrowsMessage<FileError>(HasSubstr(message)));
-  }
-
-  test::TemporaryFolder folder_;
-};
-
-std::string replaced(std::string text, std::string_view from, std::string_view to) {
-  const std::size_t place = text.find(from);
-  return place == text.npos ? "does not occur" : text.replace(place, from.size(), to);
-}
+class TableHeads : public test::NamedTables {};
 
 // Two labelled markers, a rigid body with its own, and a bone.
 const std::string motive_csv =
@@ -99,6 +74,35 @@ TEST_F(TableHeads, OfMotiveWithoutMarkersHaveBodiesForPoints) {
   EXPECT_EQ(recording.frame_rate, 50);
 }
 
+// Motive 3 exports the time code, under which nothing stands.
+TEST_F(TableHeads, OfMotiveMayHaveATimeCode) {
+  const std::string text =
+      "Format Version,1.24,Take Name,x,Export Frame Rate,120,Length Units,Centimeters\n\n"
+      ",Type,,Marker,Marker,Marker\n,Name,,LED,LED,LED\n,ID,,\"4C\",\"4C\",\"4C\"\n"
+      ",,,Position,Position,Position\nFrame,Time (Seconds),TimeCode,X,Y,Z\n"
+      "0,0.000000,15:26:46:12.02,-92.5,311.25,134.125\n";
+
+  const Recording recording = read("a.csv", text);
+
+  EXPECT_THAT(recording.columns, ElementsAre("LED.x", "LED.y", "LED.z"));
+  EXPECT_EQ(recording.unit, "cm");
+  EXPECT_THAT(recording.notes.passed_through, ElementsAre("Frame", "Time (Seconds)", "TimeCode"));
+  EXPECT_EQ(write("b.csv", recording), text);
+}
+
+TEST_F(TableHeads, OfMotiveHaveMeasuredMarkersBeforeExpectedOnes) {
+  const std::string text =
+      "Format Version,1.23,Export Frame Rate,50,Length Units,Meters\n\n"
+      ",Type,Rigid Body Marker,Rigid Body Marker,Rigid Body Marker,Rigid Body Marker,Marker,Marker,"
+      "Marker\n,Name,R:M1,R:M1,R:M1,R:M1,R:M1,R:M1,R:M1\n,ID,1,1,1,1,2,2,2\n"
+      ",,Position,Position,Position,Marker Quality,Position,Position,Position\n"
+      "Frame,Time,X,Y,Z,,X,Y,Z\n0,0,1,2,3,1,4,5,6\n";
+
+  EXPECT_EQ(read("a.csv", text).samples, (Matrix{{4, 5, 6}}));
+  EXPECT_EQ(read("a.csv", replaced(text, "Marker,Marker,Marker\n", "Bone,Bone,Bone\n")).samples,
+            (Matrix{{1, 2, 3}}));
+}
+
 TEST_F(TableHeads, OfMotiveThatBreakOffAreRefusedByLine) {
   expect_failure("a.csv", "Format Version,1.2,Export Frame Rate,fast\n",
                  "a.csv:1: expected a frame rate in Hz, found 'fast'");
@@ -147,6 +151,22 @@ TEST_F(TableHeads, OfNexusAreFoundBehindOtherTablesAndWithCommasAtTheEnds) {
 
   EXPECT_EQ(recording.samples, (Matrix{{1, 2, 3}}));
   EXPECT_EQ(write("b.csv", recording), text);
+  EXPECT_EQ(write("b.txt", read("a.txt", text)), text);
+}
+
+// As Vicon Workstation exported them.
+TEST_F(TableHeads, OfWorkstationHaveATitle) {
+  const std::string text =
+      "Title\nDate:\nTime:\nType:\nDescription:,\"\"\nNotes:,\"\"\n\nTRAJECTORIES\n100,Hz\n"
+      ",LFHD,,,C7,,\nField #,X,Y,Z,X,Y,Z\n1,1.5,2,3,4,5,6\n2,1.6,2,3,,,\n";
+  Recording recording = read("a.csv", text);
+
+  EXPECT_THAT(recording.columns, ElementsAre("LFHD.x", "LFHD.y", "LFHD.z", "C7.x", "C7.y", "C7.z"));
+  EXPECT_EQ(recording.frame_rate, 100);
+  EXPECT_EQ(recording.frames(), 2);
+  EXPECT_EQ(write("b.csv", recording), text);
+  recording.frame_rate = 50;
+  EXPECT_EQ(write("b.csv", recording), replaced(text, "100,Hz", "50,Hz"));
 }
 
 TEST_F(TableHeads, OfNexusWithoutTrajectoriesAreRefused) {
@@ -170,7 +190,7 @@ TEST_F(TableHeads, OfQtmAreReadWithAndWithoutFrameTimeAndNames) {
 
   for (const std::string& text : {qtm_head + rows, qtm_head + timed, qtm_head + names + rows,
                                   qtm_head + "Frame\tTime\t" + names + timed}) {
-    for (const char* name : {"a.tsv", "a.csv"}) {
+    for (const char* name : {"a.tsv", "a.csv", "a.txt"}) {
       const Recording recording = read(name, text);
       EXPECT_THAT(recording.columns, ElementsAre("L heel.x", "L heel.y", "L heel.z", "R heel.x",
                                                  "R heel.y", "R heel.z"));
@@ -204,9 +224,25 @@ TEST_F(TableHeads, OfQtmSayAnotherCountAndRate) {
                 "1\t2\t3\t4\t5\t6.0\n");
 }
 
+// Angles and the like that QTM calculates from markers: channels under a line of names.
+TEST_F(TableHeads, OfQtmMayHoldResultsOfCalculations) {
+  const std::string text =
+      "NO_OF_FRAMES\t2\r\nNO_OF_DATA_TYPES\t1\r\nFREQUENCY\t100\r\nDATA_INCLUDED\tAngle\r\n"
+      "DATA_TYPES\tleft_q1\r\n\r\nFrame\tTime\tleft_q1_XY\t\r\n1\t0.00000\t79.301\r\n"
+      "2\t0.01000\t79.305\r\n";
+
+  const Recording recording = read("a.tsv", text);
+
+  EXPECT_THAT(recording.columns, ElementsAre("left_q1_XY"));
+  EXPECT_EQ(recording.samples, (Matrix{{79.301}, {79.305}}));
+  EXPECT_EQ(recording.unit, "");
+  EXPECT_EQ(recording.frame_rate, 100);
+  EXPECT_EQ(write("b.tsv", recording), text);
+}
+
 TEST_F(TableHeads, OfQtmThatHoldNoMarkersAreRefused) {
   expect_failure("a.tsv", replaced(qtm_head, "D\t3D", "D\t6D") + "1\t2\t3\t4\t5\t6\n",
-                 "a.tsv:9: expected positions (DATA_INCLUDED 3D), found '6D'");
+                 "a.tsv:9: expected positions of markers (DATA_INCLUDED 3D), found '6D'");
   expect_failure("a.tsv", "NO_OF_FRAMES\t1\nFREQUENCY\t100\n1\t2\t3\n",
                  "a.tsv:3: expected MARKER_NAMES above the rows, found none");
   expect_failure("a.tsv", qtm_head, "expected rows of samples, found the end of the file");
@@ -253,42 +289,6 @@ TEST_F(TableHeads, OfAniposeAndMediaPipeAreNames) {
   EXPECT_THAT(read("a.csv", mediapipe).columns,
               ElementsAre("LEFT_HIP.x", "LEFT_HIP.y", "LEFT_HIP.z"));
   EXPECT_NEAR(read("a.csv", mediapipe).frame_rate, 30, 0.2);
-}
-
-TEST_F(TableHeads, OfOpenSimHaveChannels) {
-  const std::string text(test::tiny_mot);
-  Recording recording = read("a.mot", text);
-
-  EXPECT_THAT(recording.columns, ElementsAre("hip_flexion", "knee_angle"));
-  EXPECT_TRUE(same_bits(recording.samples, Matrix{{10.5, 20}, {11.5, test::nan}, {12.5, 24}}));
-  EXPECT_EQ(recording.frame_rate, 100);
-  EXPECT_THAT(recording.notes.layout, HasSubstr("OpenSim storage, angles in degrees: 2 channels"));
-  EXPECT_EQ(write("b.mot", recording), text);
-  recording.samples(1, 1) = 22;
-  EXPECT_EQ(write("b.mot", recording), replaced(text, "nan", "22"));
-  EXPECT_EQ(write("b.mot", excerpt(recording, 0, 1)),
-            replaced(text.substr(0, text.find("0.01")), "nRows=3", "nRows=1"));
-}
-
-TEST_F(TableHeads, OfOlderOpenSimHaveBlanksForTabs) {
-  const std::string text =
-      "name old.mot\ndatacolumns 4\ndatarows 2\nrange 0 0.1\nendheader\n"
-      "   time  ground_force_vx  ground_force_px   torque_y\n"
-      "   0.00\t  1.5   2  3\n   0.10\t  4     5  6\n";
-
-  const Recording recording = read("a.mot", text);
-
-  EXPECT_EQ(recording.samples, (Matrix{{1.5, 2, 3}, {4, 5, 6}}));
-  EXPECT_EQ(recording.frame_rate, 10);
-  EXPECT_EQ(write("b.mot", recording), text);
-}
-
-TEST_F(TableHeads, OfOpenSimThatHoldNoNumbersAreRefused) {
-  expect_failure("a.sto", "x\nDataType=Vec3\nversion=3\nendheader\ntime\ta\n0\t1,2,3\n",
-                 "a.sto:2: expected DataType=double, a number per cell, found 'Vec3'");
-  expect_failure("a.sto", "time\ta\n0\t1\n",
-                 "expected a head that ends with a line endheader, found none");
-  expect_failure("a.mot", "x\nendheader\n", "expected a line of column names, found the end");
 }
 
 }  // namespace

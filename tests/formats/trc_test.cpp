@@ -221,5 +221,50 @@ TEST_P(TrcTake, ComesBackByteForByte) {
 INSTANTIATE_TEST_SUITE_P(Real, TrcTake,
                          testing::Values("Gait.trc", "dataWithBlanksForMissingMarkers.trc"));
 
+// As in the example files of OpenSim: blanks before the 4, two tabs between values.
+TEST(Trc, ReadsBlanksAndSecondTabsInTheHead) {
+  const std::string text =
+      "PathFileType  4\t(X/Y/Z) C:\\a b\\\n"
+      "DataRate\tCameraRate\tNumFrames\tNumMarkers\tUnits\tOrigDataRate\n"
+      "  100.0\t\t  100.0\t\t      2\t\t      1\t\t mm\t  100.0\n"
+      "Frame#\tTime\tA\t\t\n\t\tX1\tY1\tZ1\n\n1\t0.00\t1\t2\t3\n2\t0.01\t4\t5\t6\n";
+  const Recording recording = parse_trc(text, "tiny.trc");
+
+  EXPECT_EQ(recording.frame_rate, 100);
+  EXPECT_EQ(recording.unit, "mm");
+  EXPECT_EQ(recording.samples, (Matrix{{1, 2, 3}, {4, 5, 6}}));
+  EXPECT_EQ(written(recording), text);
+}
+
+// Markers that Cortex calculates have names, and columns in rows, but are not counted.
+TEST(Trc, ReadsVirtualMarkersBehindThoseThatAreCounted) {
+  const std::string head =
+      "PathFileType\t4\t(X/Y/Z)\tx.trc\nDataRate\tNumFrames\tNumMarkers\tUnits\n100\t1\t1\tmm\n"
+      "Frame#\tTime\tA\t\t\tV_A\t\t\n\t\tX1\tY1\tZ1\n\n";
+
+  const Recording both = parse_trc(head + "1\t0.00\t1\t2\t3\t4\t5\t6\n", "tiny.trc");
+  EXPECT_EQ(both.samples, (Matrix{{1, 2, 3, 4, 5, 6}}));
+  EXPECT_EQ(written(both), head + "1\t0.00\t1\t2\t3\t4\t5\t6\n");
+  EXPECT_THAT(parse_trc(head + "1\t0.00\t1\t2\t3\n", "tiny.trc").columns,
+              ElementsAre("A.x", "A.y", "A.z"));
+  const std::string labelled = replaced(head, "\tZ1\n", "\tZ1\tX2\tY2\tZ2\n");
+  EXPECT_EQ(parse_trc(labelled + "1\t0.00\t1\t2\t3\t\t\t\n", "tiny.trc").samples.cols(), 6);
+}
+
+TEST(Trc, ReadsCommasWhereASpreadsheetWroteThem) {
+  const std::string text =
+      "PathFileType,4,(X/Y/Z),/a b/c.trc,\nDataRate,NumFrames,NumMarkers,Units,\n100,2,2,mm,\n"
+      "Frame#,Time,A,,,B,,\n,,X1,Y1,Z1,X2,Y2,Z2\n,,,,,,,\n"
+      "1,0,1.5000,2,3,,,\n2,0.01,4,5,6,7,8,9\n";
+  Recording recording = parse_trc(text, "tiny.trc");
+
+  EXPECT_EQ(recording.unit, "mm");
+  EXPECT_TRUE(same_bits(recording.samples, Matrix{{1.5, 2, 3, nan, nan, nan}, {4, 5, 6, 7, 8, 9}}));
+  EXPECT_EQ(written(recording), text);
+  recording.samples.row(0).tail(3) << 7, 8.5, 9;
+  const std::string filled = written(recording);
+  EXPECT_NE(filled.find("1,0,1.5000,2,3,7.0000,8.5000,9.0000\n"), filled.npos) << filled;
+}
+
 }  // namespace
 }  // namespace moclean

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <unordered_set>
 
 namespace moclean {
 namespace {
@@ -49,10 +50,27 @@ std::string_view without_unit(std::string_view name) {
   name = without_blanks(name);
   const auto parts = bracketed(name);
   if (parts && is_unit(parts->inside)) return parts->before;
-  for (const std::string_view unit : {"_mm", "_cm", "_px", " mm", " cm"})
-    if (name.size() > unit.size() && in_lower_case(name).ends_with(unit))
-      return name.substr(0, name.size() - unit.size());
-  return name;
+  constexpr std::size_t length = 3;
+  if (name.size() <= length) return name;
+  const std::string_view rest = name.substr(0, name.size() - length);
+  const std::string ending = in_lower_case(name.substr(rest.size()));
+  return is_one_of(ending, {"_mm", "_cm", "_px", " mm", " cm"}) ? rest : name;
+}
+
+constexpr std::array<std::string_view, 17> place_words = {
+    "position",    "positions", "pos", "coordinate", "coordinates", "coord",
+    "coords",      "location",  "loc", "3d",         "2d",          "trans",
+    "translation", "p3d",       "kp",  "world",      "xyz"};
+
+// `_pos` of `hip_pos`, `.position` of `hip.position`: a last word that only says that it is a
+// place.
+std::string_view place_remark(std::string_view name) {
+  const std::size_t begin = name.find_last_of("._- :/");
+  if (begin == std::string_view::npos || begin == 0) return {};
+  const std::string word = in_lower_case(name.substr(begin + 1));
+  const bool is_known =
+      std::find(place_words.begin(), place_words.end(), word) != place_words.end();
+  return is_known ? name.substr(begin) : std::string_view();
 }
 
 // Words of letters, in lower case: `LHip_posX 2` has `l`, `hip`, `pos`, `x`.
@@ -127,14 +145,19 @@ std::string unit_of_name(std::string_view name) {
 }
 
 std::vector<AxisName> axis_names(std::string_view full_name) {
-  const std::string_view name = without_unit(full_name);
+  std::string_view name = without_unit(full_name);
+  const std::string_view tail = place_remark(name);  // of `hip_x_3d`
+  name.remove_suffix(tail.size());
   std::vector<AxisName> found;
   const auto add = [&](NameStyle style, char joint, std::string_view point, char letter) {
     // Of `hip - x` or `hip, x` the point is `hip`.
-    const std::size_t begin = std::min(point.find_first_not_of("._- :/,"), point.size());
-    const std::size_t end = point.find_last_not_of("._- :/,") + 1;
+    const std::size_t begin = std::min(point.find_first_not_of("._- :/,;"), point.size());
+    const std::size_t end = point.find_last_not_of("._- :/,;") + 1;
     if (begin < end) point = point.substr(begin, end - begin);
-    found.push_back({style, joint, std::string(point), axis_letter(letter)});
+    const std::string_view remark = place_remark(point);  // of `hip_pos_x`
+    point.remove_suffix(remark.size());
+    found.push_back({style, joint, std::string(point), axis_letter(letter),
+                     std::string(remark) + std::string(tail)});
   };
   if (name.empty()) return found;
   const std::size_t size = name.size();
@@ -158,6 +181,8 @@ std::vector<AxisName> axis_names(std::string_view full_name) {
     if (axis_letter(name[letter]) && (letter == 0 || joins(name[letter - 1])))
       add(NameStyle::position, 0, name.substr(0, letter > 0 ? letter - 1 : 0), name[letter]);
   }
+  if (size > 3 && axis_letter(last) && (name[size - 2] | 0x20) == 't' && joins(name[size - 3]))
+    add(NameStyle::shifted, name[size - 3], name.substr(0, size - 3), last);
   if (axis_letter(first) && std::all_of(name.begin() + 1, name.end(), is_digit))
     add(NameStyle::numbered, 0, name.substr(1), first);
   const char before = name[size - 2];
@@ -171,26 +196,32 @@ std::vector<AxisName> axis_names(std::string_view full_name) {
 
 NamedQuantity named_quantity(std::string_view name) {
   const std::string text = squeezed(name);
-  if (is_one_of(text, {"time",        "t",
-                       "times",       "timestamp",
-                       "timestamps",  "timesec",
-                       "timesecs",    "timeseconds",
-                       "times",       "timems",
-                       "timemsec",    "timemilliseconds",
-                       "timeus",      "timens",
-                       "tms",         "tsec",
-                       "seconds",     "secs",
-                       "sec",         "milliseconds",
-                       "ms",          "msec",
-                       "unixtime",    "unixtimestamp",
-                       "epoch",       "epochms",
-                       "timestampms", "timestamps",
-                       "timestampus", "timestampns",
-                       "elapsed",     "elapsedtime",
-                       "zeit",        "temps",
-                       "tiempo",      "relativetime",
-                       "capturetime", "recordingtime"}))
-    return NamedQuantity::time;
+  static const std::unordered_set<std::string_view> times = {"time",        "t",
+                                                             "times",       "timestamp",
+                                                             "timestamps",  "timesec",
+                                                             "timesecs",    "timeseconds",
+                                                             "times",       "timems",
+                                                             "timemsec",    "timemilliseconds",
+                                                             "timeus",      "timens",
+                                                             "tms",         "tsec",
+                                                             "seconds",     "secs",
+                                                             "sec",         "milliseconds",
+                                                             "ms",          "msec",
+                                                             "unixtime",    "unixtimestamp",
+                                                             "epoch",       "epochms",
+                                                             "timestampms", "timestamps",
+                                                             "timestampus", "timestampns",
+                                                             "elapsed",     "elapsedtime",
+                                                             "zeit",        "temps",
+                                                             "tiempo",      "relativetime",
+                                                             "capturetime", "recordingtime",
+                                                             "datetime",    "clock",
+                                                             "clocktime",   "timeofday",
+                                                             "localtime",   "timelocal",
+                                                             "utc",         "utctime",
+                                                             "timeutc",     "timestamputc",
+                                                             "systemtime",  "isotime"};
+  if (times.contains(text)) return NamedQuantity::time;
   if (is_one_of(text, {"frame", "frames", "frameindex", "frameidx", "frameid", "framenumber",
                        "framenum", "frameno", "frame#", "framenr", "fnum", "framecount", "fno"}))
     return NamedQuantity::frame;

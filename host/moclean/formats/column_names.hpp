@@ -16,6 +16,7 @@ enum class NameStyle {
   brackets,  ///< `x(hip)`, `hip[x]`
   prefix,    ///< `x.hip`, `X_hip`, `X hip`
   position,  ///< `hip.Xposition`
+  shifted,   ///< `hip_tx`, as joints call their translations, too
   numbered,  ///< `x1`, `Y12`
   bare,      ///< `x`
   glued      ///< `hipX`, `LFHDx`, `xHip`: the letter's case or what stands before it sets it apart
@@ -24,9 +25,10 @@ enum class NameStyle {
 /// One reading of a column's name as a coordinate of a point.
 struct AxisName {
   NameStyle style = NameStyle::suffix;
-  char joint = 0;     ///< the character between point and letter, 0 if there is none
-  std::string point;  ///< empty if the name has only the letter
-  char axis = 'x';    ///< x, y or z, or w (of quaternions, and of boxes)
+  char joint = 0;           ///< the character between point and letter, 0 if there is none
+  std::string point;        ///< empty if the name has only the letter
+  char axis = 'x';          ///< x, y or z, or w (of quaternions, and of boxes)
+  std::string remark = {};  ///< that it is a position, `_pos` of `hip_pos_x`, `_3d` of `hip_x_3d`
 };
 
 /// All readings of a name as a coordinate, the preferred one first; a unit behind it (`hip x (mm)`)

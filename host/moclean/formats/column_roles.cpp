@@ -33,7 +33,7 @@ bool counts(const Matrix& rows, std::size_t column) {
 // Columns that one reading of names makes a point.
 struct AxisGroup {
   std::array<std::vector<std::size_t>, 4> columns;  // w, x, y, z
-  std::string point;
+  std::string point, remark;
   NameStyle style = NameStyle::suffix;
   const std::vector<std::size_t>& of(char axis) const {
     return columns[static_cast<std::size_t>(axis - 'w')];
@@ -43,14 +43,14 @@ struct AxisGroup {
 // The groups in the order of styles, and of their first columns.
 std::vector<AxisGroup> axis_groups(const std::vector<std::string>& names,
                                    const std::vector<ColumnRole>& roles) {
-  std::map<std::tuple<NameStyle, char, std::string>, std::size_t> places;
+  std::map<std::tuple<NameStyle, char, std::string, std::string>, std::size_t> places;
   std::vector<AxisGroup> groups;
   for (std::size_t c = 0; c < names.size(); ++c) {
     if (roles[c] == ColumnRole::time || roles[c] == ColumnRole::index) continue;
     for (AxisName& axis : axis_names(names[c])) {
       const auto [place, is_new] =
-          places.try_emplace({axis.style, axis.joint, axis.point}, groups.size());
-      if (is_new) groups.push_back({{}, std::move(axis.point), axis.style});
+          places.try_emplace({axis.style, axis.joint, axis.point, axis.remark}, groups.size());
+      if (is_new) groups.push_back({{}, std::move(axis.point), std::move(axis.remark), axis.style});
       groups[place->second].columns[static_cast<std::size_t>(axis.axis - 'w')].push_back(c);
     }
   }
@@ -72,8 +72,11 @@ class RoleFinder {
     times_and_indices();
     const std::vector<AxisGroup> groups = axis_groups(names_, found_.roles);
     for (const AxisGroup& group : groups) leave_out(group);
-    for (const AxisGroup& group : groups) points_of_three(group);
-    for (const AxisGroup& group : groups) points_of_two(group);
+    const bool are_places = translations_are_places(groups);
+    for (const AxisGroup& group : groups)
+      if (group.style != NameStyle::shifted || are_places) points_of_three(group);
+    for (const AxisGroup& group : groups)
+      if (group.style != NameStyle::shifted) points_of_two(group);
     std::ranges::sort(found_.points, {},
                       [](const ColumnPoint& point) { return std::ranges::min(point.columns); });
     name_points();
@@ -130,6 +133,18 @@ class RoleFinder {
       }
   }
 
+  // `pelvis_tx` among joint angles is a channel as they are; where at least half of the columns are
+  // named so, they are places.
+  bool translations_are_places(const std::vector<AxisGroup>& groups) const {
+    std::size_t count = 0;
+    for (const AxisGroup& group : groups) {
+      if (group.style != NameStyle::shifted) continue;
+      count += 3 * std::min({group.of('x').size(), group.of('y').size(), group.of('z').size()});
+    }
+    const auto others = std::count(is_taken_.begin(), is_taken_.end(), false);
+    return 2 * count >= static_cast<std::size_t>(others);
+  }
+
   void points_of_three(const AxisGroup& group) {
     const auto &x = group.of('x'), &y = group.of('y'), &z = group.of('z');
     const std::size_t count = std::min({x.size(), y.size(), z.size()});
@@ -148,6 +163,7 @@ class RoleFinder {
     if (found_.example.empty()) found_.example = names_[columns[0]];
     for (const std::size_t c : columns) take(c, ColumnRole::coordinate);
     found_.points.push_back({group.point, columns});
+    if (!group.remark.empty()) remarks_[columns[0]] = group.remark;
   }
 
   // Points without a name are counted, names that come again get a number.
@@ -155,10 +171,15 @@ class RoleFinder {
     const bool has_bare =
         std::ranges::any_of(found_.points, &std::string::empty, &ColumnPoint::name);
     DistinctNames distinct;
+    std::unordered_map<std::string, int> counts;
+    for (const ColumnPoint& point : found_.points) ++counts[point.name];
     std::size_t number = 0;
     for (ColumnPoint& point : found_.points) {
       stems_.push_back(in_lower_case(point.name));
       ++number;
+      // `nose_3d` and `nose_2d` are told apart by what else says nothing.
+      const auto remark = remarks_.find(point.columns[0]);
+      if (remark != remarks_.end() && counts[point.name] > 1) point.name += remark->second;
       const bool is_number = point.name.find_first_not_of("0123456789") == std::string::npos;
       if (is_number) point.name = has_bare ? fmt::format("point{}", number) : "point" + point.name;
       point.name = distinct(point.name);
@@ -202,7 +223,8 @@ class RoleFinder {
   std::vector<NamedQuantity> quantities_;  // that names tell of
   std::vector<bool> is_taken_;
   std::set<std::size_t> left_out_;
-  std::vector<std::string> stems_;  // of the points, in lower case
+  std::unordered_map<std::size_t, std::string> remarks_;  // of the points that begin with a column
+  std::vector<std::string> stems_;                        // of the points, in lower case
 };
 
 }  // namespace

@@ -1,5 +1,7 @@
 #include "moclean/formats/confidence.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -17,6 +19,13 @@ bool take_confidence(Matrix confidence, Recording& recording) {
   recording.samples = unseen.select(missing, recording.samples);
   recording.confidence = unseen.select(missing, confidence);
   return true;
+}
+
+double least_confidence(const Recording& recording) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const double c : recording.confidence.reshaped())
+    if (c > 0) least = std::min(least, c);
+  return std::isfinite(least) ? least : 1;
 }
 
 }  // namespace moclean

@@ -9,4 +9,7 @@ namespace moclean {
 /// states is 0 it says nothing: false, and a warning in the recording's notes.
 bool take_confidence(Matrix confidence, Recording& recording);
 
+/// The least that a recording has, above 0; 1 if it has none. What is filled is no surer.
+double least_confidence(const Recording& recording);
+
 }  // namespace moclean

@@ -20,9 +20,9 @@
 namespace moclean {
 
 std::span<const Format* const> formats() {
-  static constexpr std::array<const Format*, 10> all = {
-      &bvh_format, &amc_format, &c3d_format, &trc_format, &csv_format,
-      &tsv_format, &mot_format, &sto_format, &npy_format, &npz_format,
+  static constexpr std::array<const Format*, 11> all = {
+      &bvh_format, &amc_format, &c3d_format, &trc_format, &csv_format, &tsv_format,
+      &txt_format, &mot_format, &sto_format, &npy_format, &npz_format,
   };
   return all;
 }

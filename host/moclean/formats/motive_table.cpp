@@ -100,31 +100,36 @@ class MotiveHead {
     std::vector<std::string> names = {axes_[0], axes_[1]};
     for (std::size_t c = 2; c < width; ++c)
       names.push_back(fmt::format("{} {} {}", label("name", c), properties_[c], axes_[c]));
-    for (std::string& name : names) name.erase(name.find_last_not_of(' ') + 1);
-    TablePoints markers(names), bodies(names);
-    for (TablePoints* points : {&markers, &bodies}) {
+    for (std::string& name : names) {
+      name.erase(name.find_last_not_of(' ') + 1);
+      name.erase(0, name.find_first_not_of(' '));  // TimeCode has nothing above it
+    }
+    TablePoints markers(names), expected(names), bodies(names);
+    for (TablePoints* points : {&markers, &expected, &bodies}) {
       points->set(0, ColumnRole::index);
       if (in_lower_case(axes_[1]).starts_with("time")) points->set(1, ColumnRole::time);
     }
-    for (std::size_t c = 2; c < width; ++c) position(c, markers, bodies);
-    if (markers.empty() && bodies.empty()) fail("expected positions of markers, found none");
-    return markers.empty() ? bodies.roles() : markers.roles();
+    for (std::size_t c = 2; c < width; ++c) position(c, markers, expected, bodies);
+    for (TablePoints* points : {&markers, &expected, &bodies})
+      if (!points->empty()) return points->roles();
+    fail("expected positions of markers, found none");
   }
 
-  // Bodies move with their markers: they are points only where there are no markers.
-  void position(std::size_t c, TablePoints& markers, TablePoints& bodies) const {
+  // Measured markers are the points. Where they were not exported those are that Motive expects of
+  // a body (`Rigid Body Marker`), which move with it, or else the bodies.
+  void position(std::size_t c, TablePoints& markers, TablePoints& expected,
+                TablePoints& bodies) const {
     const std::string type = in_lower_case(label("type", c));
     const std::size_t axis = axis_of_cell(axes_[c]);
     const std::string property = in_lower_case(properties_[c]);
-    const bool is_marker = type.find("marker") != std::string::npos;
-    if (property.find("rotation") != std::string::npos) {
-      markers.set(c, ColumnRole::angle);
-      bodies.set(c, ColumnRole::angle);
-    }
+    const bool is_expected = type != "marker" && type.find("marker") != std::string::npos;
+    if (property.find("rotation") != std::string::npos)
+      for (TablePoints* points : {&markers, &expected, &bodies}) points->set(c, ColumnRole::angle);
     if (axis > 2 || property != "position") return;
     const std::string& name = label("name", c);
     const std::string key = fmt::format("{}\t{}\t{}", type, name, label("id", c));
-    (is_marker ? markers : bodies).coordinate(c, key, name, axis);
+    TablePoints& own = type == "marker" ? markers : is_expected ? expected : bodies;
+    own.coordinate(c, key, name, axis);
   }
 
   const TableText& table_;

@@ -144,22 +144,31 @@ class NexusHead {
   TableShape shape_;
 };
 
+// Whether a line with the name of a section is followed by its rate and names, since a table of one
+// column may be named so; behind a title the line of axes, too, has to be one.
+bool begins_section(TextLines lines, bool has_title) {
+  if (section_of(lines.line()).empty() || !lines.next()) return false;
+  double rate = 0;
+  const std::string_view cell = lines.line().substr(0, lines.line().find_first_of(",;\t"));
+  if (!table_number(cell, '.', rate)) return false;
+  if (lines.next() && lines.line().find_first_of(",;\t") == std::string_view::npos) return false;
+  if (!has_title) return true;
+  if (!lines.next()) return false;
+  const std::string axes = in_lower_case(lines.line().substr(0, 5));
+  return axes == "frame" || axes == "field";
+}
+
 }  // namespace
 
 std::optional<TableShape> nexus_shape(const TableText& table) {
+  constexpr std::size_t longest_title = 12;  // lines Title, Date and so on of older versions
   TextLines lines(table.text);
-  do
-    if (!lines.next()) return std::nullopt;
-  while (is_blank_row(lines.line()));
-  if (section_of(lines.line()).empty()) return std::nullopt;
-  TextLines next = lines;  // a table of one column may be named so
-  double rate = 0;
-  if (!next.next()) return std::nullopt;
-  const std::string_view cell = next.line().substr(0, next.line().find_first_of(",;\t"));
-  if (!table_number(cell, '.', rate)) return std::nullopt;
-  if (next.next() && next.line().find_first_of(",;\t") == std::string_view::npos)
-    return std::nullopt;
-  return NexusHead(table).shape();
+  for (std::size_t n = 0; n < longest_title && lines.next();) {
+    if (is_blank_row(lines.line())) continue;
+    if (begins_section(lines, n > 0)) return NexusHead(table).shape();
+    ++n;
+  }
+  return std::nullopt;
 }
 
 }  // namespace moclean

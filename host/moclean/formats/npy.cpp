@@ -25,12 +25,13 @@ bool needs_numbers(const NpyArray& array, const ArrayColumns& columns, const Rea
 }
 
 FramedSource source_of(const NpyArray& array, const ArrayColumns& columns,
-                       const ReadOptions& options) {
+                       const ReadOptions& options, double least_confidence) {
   NpyDocument document{.content = nullptr,
                        .array = array,
                        .samples = columns.samples,
                        .columns = columns.names,
                        .confidences = columns.confidences,
+                       .least_confidence = least_confidence,
                        .missing = options.missing};
   document.array.items = {};
   if (needs_numbers(array, columns, options)) {
@@ -60,9 +61,14 @@ class NpyRewriter {
       : document_(document),
         first_(static_cast<std::size_t>(first)),
         samples_(samples),
-        sample_of_(width(), -1) {
-    for (std::size_t c = 0; c < document.samples.size(); ++c)
+        sample_of_(width(), -1),
+        judged_by_(width()) {
+    for (std::size_t c = 0; c < document.samples.size(); ++c) {
       sample_of_[static_cast<std::size_t>(document.samples[c])] = static_cast<Index>(c);
+      if (document.confidences[c] >= 0)
+        judged_by_[static_cast<std::size_t>(document.confidences[c])].push_back(
+            static_cast<Index>(c));
+    }
     if (document.content) places_ = places_of(document.array);
     type_ = written_type();
   }
@@ -118,9 +124,18 @@ class NpyRewriter {
            (std::isnan(value) && was_missing(frame, column, sample));
   }
 
+  // Whether the column is the confidence 0 of a point that has coordinates now.
+  bool is_of_filled(Index frame, std::size_t column) const {
+    const std::vector<Index>& judged = judged_by_[column];
+    return !judged.empty() && number(frame, column) == 0 &&
+           !samples_.row(frame)(judged).array().isNaN().any();
+  }
+
   void put(Index frame, std::size_t column, char* item) const {
     const Index sample = sample_of_[column];
-    if (!keeps(frame, column, sample))
+    if (is_of_filled(frame, column))
+      put_number(document_.least_confidence, type_, item);
+    else if (!keeps(frame, column, sample))
       put_number(samples_(frame, sample), type_, item);
     else if (type_ == document_.array.type)
       std::copy_n(original(frame, column), type_.size, item);
@@ -132,7 +147,8 @@ class NpyRewriter {
   std::size_t first_;
   const Matrix& samples_;
   NpyType type_;
-  std::vector<Index> sample_of_;  // per column of the array, or -1
+  std::vector<Index> sample_of_;               // per column of the array, or -1
+  std::vector<std::vector<Index>> judged_by_;  // samples, per column that is their confidence
   NpyPlaces places_;
 };
 
@@ -168,7 +184,7 @@ Recording recording_of(const NpyArray& array, const std::filesystem::path& file,
     const bool are_used = take_confidence(confidence_of(numbers, columns), recording);
     if (!are_used) std::ranges::fill(columns.confidences, -1);
   }
-  recording.source = source_of(array, columns, options);
+  recording.source = source_of(array, columns, options, least_confidence(recording));
   return recording;
 }
 

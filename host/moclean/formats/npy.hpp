@@ -21,6 +21,7 @@ struct NpyDocument {
   std::vector<Index> samples;        ///< columns of the flattened array that are samples
   std::vector<std::string> columns;  ///< what the recording calls them
   std::vector<Index> confidences;    ///< per sample that of its point, or -1
+  double least_confidence = 1;       ///< of points that were filled
   std::vector<double> missing;       ///< numbers that stand for a missing sample
 };
 
@@ -34,7 +35,8 @@ Recording parse_npy(std::string_view content, const std::filesystem::path& file,
 /// Writes the array that NumPy reads: of the shape, type and byte order of the array that was read,
 /// with the numbers that are no samples as they were, in the order of C; whole numbers are rounded,
 /// and become float64 where a sample is missing or beyond their range. A point that is missing for
-/// its confidence or for a mark and still is keeps its numbers. Recordings from elsewhere become
+/// its confidence or for a mark and still is keeps its numbers; one of confidence 0 that has
+/// coordinates now gets the least confidence above 0. Recordings from elsewhere become
 /// float64, (frames, columns), without names and rate (NPZ has both).
 void write_npy(AtomicFile& file, const Recording& recording);
 

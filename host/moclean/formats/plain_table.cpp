@@ -57,17 +57,42 @@ bool are_numbers(std::string_view line, char separator) {
   return count > 0;
 }
 
-// The candidate of which names and the first row have as many, else the first that occurs among the
-// names.
-char separator_between(std::string_view names, std::string_view row) {
-  char first = 0;
-  for (const char candidate : {',', ';', '\t', '|'}) {
-    const std::size_t count = count_cells(names, candidate);
-    if (count < 2) continue;
-    if (count == count_cells(row, candidate)) return candidate;
-    if (!first) first = candidate;
+constexpr std::string_view separators = ",;\t|";
+
+// How well a separator fits to a line of names and rows: 3 if all have as many cells, and no cell
+// that is not in quotes holds another separator unless it is a number; 2 if the first row has as
+// many; 1 if it stands among the names.
+int fit(char separator, std::string_view names, const std::vector<std::string_view>& rows) {
+  const std::size_t count = count_cells(names, separator);
+  if (count < 2) return 0;
+  if (rows.empty() || count_cells(rows[0], separator) != count) return 1;
+  for (const std::string_view row : rows) {
+    std::size_t found = 0;
+    for (TableCells cells(row, separator); cells.next(); ++found) {
+      const bool is_whole = cells.is_quoted() ||
+                            cells.text().find_first_of(separators) == std::string_view::npos ||
+                            is_number_cell(cells.text());
+      if (!is_whole) return 2;
+    }
+    if (found != count) return 2;
   }
-  if (first) return first;
+  return 3;
+}
+
+// The one that fits best; of those that fit equally well the first.
+char separator_between(std::string_view names, const std::vector<std::string_view>& rows) {
+  char best = 0;
+  int most = 0;
+  for (const char candidate : separators)
+    if (const int own = fit(candidate, names, rows); own > most) {
+      best = candidate;
+      most = own;
+    }
+  if (best) return best;
+  // A name alone may stand over `t x y`.
+  const bool are_names = rows.size() > 1 && !is_number_cell(rows[0].substr(0, rows[0].find('\t')));
+  if (are_names && count_cells(rows[0], '\t') > 1) return '\t';
+  const std::string_view row = rows.empty() ? std::string_view() : rows[0];
   const std::size_t words = count_cells(names, between_words);
   const std::size_t cells = count_cells(row, between_words);
   const bool are_words =
@@ -147,18 +172,24 @@ class PlainHead {
         TextSpan{static_cast<std::size_t>(value.data() - table_.text.data()), value.size()};
   }
 
-  std::string_view line_after() const {
-    TextLines after = lines_;
-    while (after.next())
-      if (!is_no_row(after.line(), 0)) return after.line();
-    return {};
+  // Some lines behind this one, which has the names.
+  std::vector<std::string_view> rows_after() const {
+    constexpr std::size_t most = 8, most_bytes = 1 << 16;
+    std::vector<std::string_view> rows;
+    std::size_t bytes = 0;
+    for (TextLines after = lines_; rows.size() < most && bytes < most_bytes && after.next();) {
+      if (is_no_row(after.line(), 0)) continue;
+      rows.push_back(after.line());
+      bytes += after.line().size();
+    }
+    return rows;
   }
 
   void names() {
     if (!has_line_) fail("expected a line of column names, found the end of the file");
     const std::string_view line = lines_.line();
     shape_.separator =
-        stated_separator_ ? stated_separator_ : separator_between(line, line_after());
+        stated_separator_ ? stated_separator_ : separator_between(line, rows_after());
     if (are_numbers(line, shape_.separator)) {
       names_elsewhere(line);
       return;

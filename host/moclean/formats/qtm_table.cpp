@@ -31,7 +31,11 @@ class QtmHead {
                                                                                            : '\t';
     shape_.unit = "mm";  // QTM exports no other
     settings();
-    columns();
+    if (!has_row_) fail("expected rows of samples, found the end of the file");
+    if (has_channels_)
+      channels();
+    else
+      columns();
     return std::move(shape_);
   }
 
@@ -44,6 +48,7 @@ class QtmHead {
   // underscores (columns may be called in capitals, too). EVENT lines stand among them.
   void settings() {
     while (lines_.next()) {
+      if (lines_.line().empty()) continue;
       TableCells cells(lines_.line(), shape_.separator);
       cells.next();
       const std::string name = unquoted(cells);
@@ -68,11 +73,14 @@ class QtmHead {
         fail(fmt::format("expected a FREQUENCY in Hz, found {}", excerpt(value)));
       shape_.rate_text = span;
     }
-    if (name == "DATA_INCLUDED" && value != "3D")
-      fail(
-          fmt::format("expected positions (DATA_INCLUDED 3D), found {}: of rigid bodies (6D) and "
-                      "cameras (2D) no marker can be cleaned",
-                      excerpt(value)));
+    if (name == "DATA_INCLUDED" && value != "3D") {
+      if (value.ends_with('D') || value.ends_with('d'))
+        fail(
+            fmt::format("expected positions of markers (DATA_INCLUDED 3D), found {}: neither rigid "
+                        "bodies (6D) nor pictures of cameras (2D) are read",
+                        excerpt(value)));
+      has_channels_ = true;  // Angle, Velocity and so on, calculated from markers
+    }
     if (name == "MARKER_NAMES") {
       markers_ = cells_of_line(lines_.line(), shape_.separator);
       markers_.erase(markers_.begin());
@@ -80,8 +88,20 @@ class QtmHead {
     }
   }
 
+  // Results of calculations have a line of names.
+  void channels() {
+    const std::vector<std::string> names = cells_of_line(lines_.line(), shape_.separator);
+    const NamedQuantity first = named_quantity(names[0]);
+    if (first != NamedQuantity::frame && first != NamedQuantity::time)
+      fail(fmt::format("expected Frame, Time and names, found {}", excerpt(lines_.line())));
+    shape_.unit.clear();
+    shape_.rows = lines_.position();
+    shape_.first_line = lines_.number() + 1;
+    shape_.least_cells = named_columns(names);
+    shape_.roles = recognise_columns(names, first_values(table_.text, shape_, names.size()));
+  }
+
   void columns() {
-    if (!has_row_) fail("expected rows of samples, found the end of the file");
     if (markers_.empty()) fail("expected MARKER_NAMES above the rows, found none");
     std::vector<std::string> names = cells_of_line(lines_.line(), shape_.separator);
     names.resize(named_columns(names));
@@ -132,7 +152,7 @@ class QtmHead {
   TextLines lines_;
   TableShape shape_;
   std::vector<std::string> markers_;
-  bool has_row_ = false;
+  bool has_row_ = false, has_channels_ = false;
 };
 
 }  // namespace

@@ -9,6 +9,17 @@ namespace moclean {
 /// Separator of tables whose cells are words, with any blanks and tabs between them.
 inline constexpr char between_words = ' ';
 
+/// Separators of tables whose cells hold vectors, as OpenSim writes them: a tab between cells and a
+/// comma or colon between the components, each of which counts as a cell.
+inline constexpr char between_components = '\x01', between_colon_components = '\x02';
+
+/// The separator as it stands in the text between cells that are no components.
+inline char separator_in_text(char separator) {
+  const bool is_of_vectors =
+      separator == between_components || separator == between_colon_components;
+  return is_of_vectors ? '\t' : separator;
+}
+
 /// The cells of a line of a table, one after the other.
 ///
 /// A cell may stand in double quotes, in which a doubled quote is one (RFC 4180); blanks around it
@@ -17,7 +28,12 @@ inline constexpr char between_words = ' ';
 class TableCells {
  public:
   TableCells(std::string_view line, char separator)
-      : position_(line.data()), end_(line.data() + line.size()), separator_(separator) {
+      : position_(line.data()),
+        end_(line.data() + line.size()),
+        separator_(separator_in_text(separator)),
+        inner_(separator == between_components         ? ','
+               : separator == between_colon_components ? ':'
+                                                       : separator_) {
     if (separator_ == between_words) {
       while (position_ != end_ && is_blank(*position_)) ++position_;
       at_end_ = position_ == end_;
@@ -43,6 +59,7 @@ class TableCells {
 
   std::string_view text() const { return text_; }  ///< without quotes; doubled ones stay doubled
   bool is_quoted() const { return is_quoted_; }
+  const char* after() const { return raw_end_; }  ///< the end of the cell: a separator, or the end
 
   /// The cell with its quotes, without the blanks around it; of an empty one, where it stands.
   std::string_view raw() const {
@@ -52,7 +69,7 @@ class TableCells {
  private:
   bool is_blank(char c) const { return c == ' ' || (c == '\t' && separator_ != '\t'); }
   bool separates(char c) const {
-    return separator_ == between_words ? is_blank(c) : c == separator_;
+    return separator_ == between_words ? is_blank(c) : c == separator_ || c == inner_;
   }
 
   // Moves behind the closing quote; false if there is none.
@@ -97,7 +114,7 @@ class TableCells {
   const char* end_;
   const char* begin_ = nullptr;
   const char* raw_end_ = nullptr;
-  char separator_;
+  char separator_, inner_;  // of components; the same where there are none
   bool at_end_ = false, is_quoted_ = false;
   std::string_view text_;
 };

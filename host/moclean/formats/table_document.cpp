@@ -21,7 +21,8 @@ namespace moclean {
 namespace {
 
 TableShape shape_of(const TableText& table) {
-  for (auto* const recognise : {motive_shape, nexus_shape, qtm_shape, pose_shape, storage_shape})
+  for (auto* const recognise :
+       {motive_shape, nexus_shape, qtm_shape, pose_shape, storage_shape, levels_shape})
     if (auto shape = recognise(table)) return *std::move(shape);
   return plain_shape(table);
 }
@@ -42,6 +43,8 @@ class TableReader {
   Recording read() {
     TableShape& shape = document_->shape;
     shape = shape_of({text(), file_, document_->extension, options_});
+    if (options_.columns.empty())
+      refuse_long_table({text(), file_, document_->extension, options_}, shape);
     state_columns(shape);
     Recording recording;
     end_behind_last_row(shape, recording.notes.warnings);
@@ -52,6 +55,7 @@ class TableReader {
     recording.samples = std::move(rows.samples);
     if (!rows.confidences.empty())
       document_->uses_confidence = take_confidence(confidence_of(rows, recording), recording);
+    document_->least_confidence = least_confidence(recording);
     rate(rows, recording);
     notes(recording);
     document_->frames = recording.frames();
@@ -163,8 +167,14 @@ class TableReader {
     const auto time = std::ranges::find(shape.roles.roles, ColumnRole::time);
     if (time != shape.roles.roles.end()) {
       time_column_ = static_cast<std::size_t>(time - shape.roles.roles.begin());
-      scale_ = time_scale(rows.times, shape.roles.names[*time_column_]);
+      // Clock times are in seconds whatever the column is called.
+      const std::string& name = shape.roles.names[*time_column_];
+      scale_ = time_scale(rows.times, rows.are_clock_times ? "time (s)" : name);
     }
+    if (rows.repeated_times > 0)
+      recording.notes.warnings.push_back(fmt::format("{} frame{} the time of the one before",
+                                                     rows.repeated_times,
+                                                     rows.repeated_times == 1 ? " has" : "s have"));
     recording.frame_rate = shape.rate > 0 ? shape.rate : scale_.rate;
     const double found = recording.frame_rate;
     auto& warnings = recording.notes.warnings;

@@ -19,6 +19,7 @@ struct TableDocument {
   Index frames = 0;
   std::vector<std::string> columns;  ///< names of the samples
   bool uses_confidence = false;      ///< points of confidence 0 are missing
+  double least_confidence = 0;       ///< of those that were seen, if it says
   std::vector<double> missing;       ///< numbers that stand for missing samples
   std::string missing_text;          ///< how the file spells the first one, if it has any
 };
@@ -47,7 +48,9 @@ const TableDocument* table_of(const Recording& recording, std::string_view exten
 /// Writes a recording into the text it was read from: samples that have other values now as the
 /// shortest text that reads back as the same double, those that are missing now as the file spells
 /// that, a rate and number of frames where the head states them; all else, and rows of the frames
-/// there are, byte for byte. Precondition: `document` is table_of() the recording.
+/// there are, byte for byte. A point of confidence 0 that has coordinates now gets the least
+/// confidence above 0 that the file has, or it would be missing again to its readers. Precondition:
+/// `document` is table_of() the recording.
 void write_table(AtomicFile& file, const TableDocument& document, const Recording& recording);
 
 }  // namespace moclean

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -14,6 +15,7 @@
 #include "moclean/formats/row_collector.hpp"
 #include "moclean/formats/table_cells.hpp"
 #include "moclean/formats/table_number.hpp"
+#include "moclean/formats/table_times.hpp"
 #include "moclean/formats/text_lines.hpp"
 #include "moclean/formats/text_scanner.hpp"
 
@@ -54,6 +56,8 @@ class RowReader {
         shape_(shape),
         file_(file),
         checks_times_(checks_times),
+        is_quick_(shape.decimal == '.' && separator_in_text(shape.separator) == shape.separator &&
+                  shape.separator != between_words),
         uses_(cell_uses(shape)),
         frames_(static_cast<Index>(shape.roles.sample_columns().size())) {
     for (const ColumnPoint& point : shape.roles.points)
@@ -68,6 +72,8 @@ class RowReader {
       row();
     }
     if (frames_.count() == 0) fail("expected a line of samples, found the end of the file");
+    if (!rows_.stopped && 100 * rows_.repeated_times > static_cast<std::size_t>(frames_.count()))
+      throw FileError(file_, first_repetition_.line, first_repetition_.text);
     rows_.samples = frames_.take();
     return std::move(rows_);
   }
@@ -82,14 +88,19 @@ class RowReader {
     const char* position = line.data();
     const char* const end = position + line.size();
     std::size_t column = 0;
-    if (shape_.decimal == '.' && shape_.separator != between_words)
-      column = quick_cells(position, end);
-    if (column == uses_.size()) return;
-    // An empty cell behind the last separator counts, so the walk goes on from that separator.
-    const bool is_done = column > 0 && position == end + 1;
-    if (!is_done) {
+    // The quick way goes as far as it can, one cell is looked at closely, and so on. An empty cell
+    // behind the last separator counts: `position` is behind `end` only once that was taken.
+    while (is_quick_ && column < uses_.size() && position <= end) {
+      column = quick_cells(column, position, end);
+      if (column == uses_.size() || position > end) break;
       TableCells cells({position, end}, shape_.separator);
-      for (; cells.next(); ++column) {
+      cells.next();
+      if (!use(column++, cells)) return;
+      position = cells.after() == end ? end + 1 : cells.after() + 1;
+    }
+    if (is_quick_ && column == uses_.size() && position <= end) surplus(position, end);
+    if (!is_quick_) {
+      for (TableCells cells(line, shape_.separator); cells.next(); ++column) {
         if (column >= uses_.size()) {
           if (!cells.text().empty()) fail_count();
         } else if (!use(column, cells)) {
@@ -104,9 +115,10 @@ class RowReader {
 
   // Numbers and empty cells, up to the first that is something else. Moves `position` to that
   // cell; behind `end` if there is none.
-  std::size_t quick_cells(const char*& position, const char* const end) {
-    for (std::size_t column = 0; column < uses_.size(); ++column) {
+  std::size_t quick_cells(std::size_t column, const char*& position, const char* const end) {
+    for (; column < uses_.size() && position <= end; ++column) {
       const CellUse use = uses_[column];
+      if (use.kind == CellUse::Kind::time && rows_.are_clock_times) return column;
       const char* first = position;
       while (first != end && *first == ' ') ++first;
       double value = no_sample;
@@ -114,21 +126,18 @@ class RowReader {
       const char* const after = is_skipped ? skipped(position, end) : number_at(first, end, value);
       if (!after || (after != end && *after != shape_.separator)) return column;
       if (use.kind == CellUse::Kind::sample)
-        sample(use.place, value, {first, static_cast<std::size_t>(after - first)});
+        sample(column, value, {first, static_cast<std::size_t>(after - first)});
       else if (!is_skipped)
         accept(column, value);
       position = after + 1;
-      if (position == end + 1) return column + 1;
     }
-    return surplus(position, end);
+    return column;
   }
 
   // Cells behind the last column are empty.
-  std::size_t surplus(const char*& position, const char* end) {
+  void surplus(const char* position, const char* end) const {
     for (TableCells cells({position, end}, shape_.separator); cells.next();)
       if (!cells.text().empty()) fail_count();
-    position = end + 1;
-    return uses_.size();
   }
 
   // The end of a cell that is not used; null if it has to be looked at.
@@ -160,26 +169,51 @@ class RowReader {
     if (use.kind == CellUse::Kind::skipped) return true;
     double value = no_sample;
     const std::string_view text = cells.text();
-    if (!table_number(text, shape_.decimal, value)) {
-      if (!says_missing(text)) {
+    const bool is_time = use.kind == CellUse::Kind::time;
+    if (is_time && rows_.are_clock_times ? !clock(text, value)
+                                         : !table_number(text, shape_.decimal, value)) {
+      if (is_time && rows_.times.empty() && !rows_.are_clock_times && clock(text, value)) {
+        rows_.are_clock_times = true;
+      } else if (!says_missing(text)) {
         rows_.stopped = {lines_.number(), column, std::string(text)};
         return false;
+      } else {
+        value = no_sample;
       }
-      value = no_sample;
     }
     if (use.kind == CellUse::Kind::sample)
-      sample(use.place, value, cells.raw());
+      sample(column, value, cells.raw());
     else
       accept(column, value);
     return true;
   }
 
-  void sample(std::size_t place, double value, std::string_view text) {
-    const bool is_missing = std::isnan(value);
-    samples_[place] = is_missing ? no_sample : value;  // of either sign
+  void sample(std::size_t column, double value, std::string_view text) {
+    const bool is_missing = !(std::abs(value) <= std::numeric_limits<double>::max());
+    if (is_missing && !std::isnan(value))
+      fail(fmt::format("expected a finite number, found {} in {}", excerpt(text), at(column)));
+    samples_[uses_[column].place] = is_missing ? no_sample : value;  // NaN of either sign
     if (!is_missing || has_missing_) return;
     rows_.missing_text = text;
     has_missing_ = true;
+  }
+
+  // A time that a clock shows, as seconds since the first one. Behind midnight they go on.
+  bool clock(std::string_view text, double& value) {
+    constexpr std::int64_t day = 86400;
+    const std::optional<ClockTime> time = clock_time(text);
+    if (!time) return false;
+    clock_ = text;
+    if (rows_.times.empty()) first_second_ = time->seconds;
+    std::int64_t seconds = time->seconds - first_second_ + days_ * day;
+    const bool is_next_day = !time->has_date && !rows_.times.empty() &&
+                             static_cast<double>(seconds) < rows_.times.back() - day / 2;
+    if (is_next_day) {
+      ++days_;
+      seconds += day;
+    }
+    value = static_cast<double>(seconds) + time->fraction;
+    return true;
   }
 
   void accept(std::size_t column, double value) {
@@ -194,14 +228,25 @@ class RowReader {
   void time(std::size_t column, double value) {
     if (checks_times_) {
       if (!std::isfinite(value)) fail(fmt::format("expected a time in {}, found none", at(column)));
-      if (!rows_.times.empty() && !(value > rows_.times.back()))
-        fail(fmt::format("expected a time after {}, found {} in {}{}", rows_.times.back(), value,
-                         at(column),
-                         value == rows_.times.back()
-                             ? ": are the times printed with too few digits? --rate states the rate"
-                             : ""));
+      if (!rows_.times.empty() && !(value > rows_.times.back())) standing_time(column, value);
     }
     rows_.times.push_back(value);
+    last_clock_ = clock_;
+  }
+
+  // Programs that integrate write the last frame twice, and loggers one now and then; times of too
+  // few digits stand still again and again.
+  void standing_time(std::size_t column, double value) {
+    const bool is_same = value == rows_.times.back();
+    const auto problem = [&] {
+      return fmt::format(
+          "expected a time after {}, found {} in {}{}", shown(rows_.times.back(), last_clock_),
+          shown(value, clock_), at(column),
+          is_same ? ": are the times printed with too few digits? --rate states the rate" : "");
+    };
+    if (!is_same) fail(problem());
+    if (rows_.repeated_times++ == 0)
+      first_repetition_ = {.line = lines_.number(), .column = column, .text = problem()};
   }
 
   void frame_number(std::size_t column, double value) {
@@ -211,6 +256,10 @@ class RowReader {
                       "frame, or of several takes, is not read",
                       last_frame_, value, at(column)));
     if (!std::isnan(value)) last_frame_ = value;
+  }
+
+  std::string shown(double time, std::string_view clock) const {
+    return rows_.are_clock_times ? std::string(clock) : fmt::to_string(time);
   }
 
   std::string at(std::size_t column) const {
@@ -232,12 +281,16 @@ class RowReader {
   const TableShape& shape_;
   const std::filesystem::path& file_;
   bool checks_times_;
+  bool is_quick_;
   std::vector<CellUse> uses_;
   RowCollector frames_;
   std::size_t confidences_ = 0;
   TableRows rows_;
   double* samples_ = nullptr;
   double last_frame_ = -std::numeric_limits<double>::infinity();
+  std::int64_t first_second_ = 0, days_ = 0;  // of clock times
+  std::string_view clock_, last_clock_;
+  UnreadableCell first_repetition_;
   bool has_missing_ = false;
   int others_ = 0;
 };
@@ -267,8 +320,9 @@ TableSurvey survey_rows(std::string_view text, const TableShape& shape, std::siz
       double value = 0;
       const bool is_number =
           table_number(cells.text(), '.', value) || table_number(cells.text(), ',', value);
-      if (is_number && !std::isnan(value)) ++survey.numbers[column];
       const ColumnRole role = shape.roles.roles[column];
+      const bool is_clock = role == ColumnRole::time && !is_number && clock_time(cells.text());
+      if (is_clock || (is_number && !std::isnan(value))) ++survey.numbers[column];
       if (!is_number || role == ColumnRole::other || role == ColumnRole::angle) continue;
       survey.with_point += has_decimal(cells.text(), '.');
       survey.with_comma += has_decimal(cells.text(), ',');

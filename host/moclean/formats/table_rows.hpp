@@ -23,14 +23,17 @@ struct UnreadableCell {
 struct TableRows {
   Matrix samples;                         ///< [frames x sample columns]
   std::vector<double> times;              ///< as the file has them; empty without a time column
+  bool are_clock_times = false;           ///< then `times` are in seconds, from the first one
+  std::size_t repeated_times = 0;         ///< of frames that have the time of the one before
   std::vector<double> confidences;        ///< [frames x points with a confidence]
   std::string missing_text;               ///< the first missing sample as the file spells it
   std::optional<UnreadableCell> stopped;  ///< at which the rest was left unread
 };
 
 /// Reads the rows between shape.rows and shape.rows_end; blank lines and comments (`#`) are none.
-/// Throws FileError for a row that has more or fewer cells than there are columns, and, if
-/// `checks_times`, for times and frame numbers that do not grow.
+/// Throws FileError for a row that has more or fewer cells than there are columns, for infinite
+/// samples and, if `checks_times`, for times and frame numbers that do not grow; times may stand
+/// still in one frame of a hundred.
 TableRows read_rows(std::string_view text, const TableShape& shape,
                     const std::filesystem::path& file, bool checks_times);
 

@@ -62,7 +62,15 @@ std::optional<TableShape> qtm_shape(const TableText& table);
 std::optional<TableShape> pose_shape(const TableText& table);
 std::optional<TableShape> storage_shape(const TableText& table);
 
+/// A head of several lines as pandas writes it for columns of several levels: one of them tells the
+/// coordinates, the others whose they are.
+std::optional<TableShape> levels_shape(const TableText& table);
+
 /// Any other table: comments, a line of names, rows. Throws FileError.
 TableShape plain_shape(const TableText& table);
+
+/// Throws FileError for a table with a row per point ("long", "tidy"): of one or two points, with a
+/// column such as `keypoint` or `track` that tells whose a row is and is not always the same.
+void refuse_long_table(const TableText& table, const TableShape& shape);
 
 }  // namespace moclean

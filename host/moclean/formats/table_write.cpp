@@ -121,15 +121,29 @@ class TableWriter {
       if (columns_[s] < count &&
           !is_same_number(before_[s], recording_.samples(frame, static_cast<Index>(s))))
         changes_.emplace_back(columns_[s], s);
+    seen_now(frame);
     std::ranges::sort(changes_);
     const char* copied = line.data();
     for (const auto& [column, sample] : changes_) {
       const std::string_view raw = cells_[column].raw;
       text_.append(copied, raw.data());
-      put(recording_.samples(frame, static_cast<Index>(sample)), cells_[column].is_quoted);
+      const double value = sample == is_confidence
+                               ? document_.least_confidence
+                               : recording_.samples(frame, static_cast<Index>(sample));
+      put(value, cells_[column].is_quoted);
       copied = raw.data() + raw.size();
     }
     text_.append(copied, line.data() + line.size());
+  }
+
+  // Points of confidence 0 that have coordinates now.
+  void seen_now(Index frame) {
+    for (const auto& [first, count, confidence] : judged_) {
+      const auto samples = recording_.samples.row(frame).segment(static_cast<Index>(first),
+                                                                 static_cast<Index>(count));
+      if (cells_[confidence].number == 0 && !samples.array().isNaN().any())
+        changes_.emplace_back(confidence, is_confidence);
+    }
   }
 
   // The row's samples as they were read: without points that were not seen, without marks.
@@ -154,7 +168,9 @@ class TableWriter {
     std::string spelling = document_.missing_text;
     const bool is_missing = std::isnan(value);
     if (is_missing && !document_.missing.empty()) spelling = spelled(document_.missing[0]);
-    if (is_missing && spelling.empty() && shape_.separator == between_words) spelling = "nan";
+    const bool needs_text = shape_.separator == between_words ||
+                            separator_in_text(shape_.separator) != shape_.separator;
+    if (is_missing && spelling.empty() && needs_text) spelling = "nan";
     if (!is_missing) spelling = spelled(value);
     const bool needs_quotes = spelling.find(shape_.separator) != spelling.npos;
     const bool has_quotes = spelling.starts_with('"');
@@ -171,6 +187,8 @@ class TableWriter {
     return text;
   }
 
+  static constexpr std::size_t is_confidence = static_cast<std::size_t>(-1);
+
   struct JudgedPoint {
     std::size_t first, count, confidence;
   };
@@ -185,7 +203,7 @@ class TableWriter {
   std::vector<JudgedPoint> judged_;
   std::vector<double> before_;
   std::vector<Cell> cells_;
-  std::vector<std::pair<std::size_t, std::size_t>> changes_;  // column of the file, sample
+  std::vector<std::pair<std::size_t, std::size_t>> changes_;  // column, sample or is_confidence
   bool text_is_unicode_ = false;
   std::string text_;
 };

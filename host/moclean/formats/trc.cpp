@@ -22,13 +22,6 @@ bool is_same_word(std::string_view a, std::string_view b) {
   return std::ranges::equal(a, b, [](char x, char y) { return (x | 0x20) == (y | 0x20); });
 }
 
-std::vector<std::string_view> cells_of(std::string_view line) {
-  std::vector<std::string_view> found;
-  for (TrcCells cells(line); cells.next();) found.push_back(cells.cell());
-  while (!found.empty() && found.back().empty()) found.pop_back();  // tabs at the end of the line
-  return found;
-}
-
 // What a Time column is worth: its seconds, and how far they may be off for being printed with few
 // decimals.
 struct Times {
@@ -91,24 +84,28 @@ class TrcParser {
   void expect_line(std::string_view what) {
     do
       if (!lines_.next()) fail(fmt::format("expected {}, found the end of the file", what));
-    while (lines_.is_blank());
+    while (is_trc_blank(lines_.line()));
   }
 
   void path_line() {
     expect_line("PathFileType");
-    const std::vector<std::string_view> cells = cells_of(lines_.line());
-    if (!is_same_word(cells[0], "PathFileType"))
+    const std::vector<std::string_view> cells = trc_cells(lines_.line());
+    // Also with blanks before the 4, as in files of OpenSim's own examples.
+    const std::string_view word = cells[0].substr(0, cells[0].find(' '));
+    if (!is_same_word(word, "PathFileType"))
       fail(fmt::format("expected PathFileType, found {}", excerpt(cells[0])));
-    for (const std::string_view cell : cells)
+    for (std::string_view cell : cells) {
+      cell = cell.substr(0, cell.find(' '));  // the path may follow in the same cell
       if (cell.starts_with('(') && cell.find('/') != cell.npos && !is_same_word(cell, "(X/Y/Z)"))
         fail(fmt::format("expected coordinates (X/Y/Z), found {}", excerpt(cell)));
+    }
   }
 
   void settings() {
     expect_line("a line with DataRate, NumFrames, NumMarkers, Units");
-    const std::vector<std::string_view> names = cells_of(lines_.line());
+    const std::vector<std::string_view> names = trc_cells(lines_.line());
     expect_line("the values of DataRate, NumFrames, NumMarkers, Units");
-    const std::vector<std::string_view> values = cells_of(lines_.line());
+    const std::vector<std::string_view> values = trc_settings(lines_.line(), names.size());
     bool has_rate = false;
     for (std::size_t i = 0; i < names.size(); ++i) {
       const std::string_view value = i < values.size() ? values[i] : std::string_view();
@@ -133,7 +130,8 @@ class TrcParser {
 
   void markers() {
     expect_line("Frame#, Time and the markers");
-    const std::vector<std::string_view> cells = cells_of(lines_.line());
+    markers_line_ = lines_.number();
+    const std::vector<std::string_view> cells = trc_cells(lines_.line());
     if (cells.size() < 3 || !cells[0].starts_with("Frame") || !is_same_word(cells[1], "Time"))
       fail(fmt::format("expected Frame#, Time and the markers, found {}", excerpt(lines_.line())));
     for (std::size_t c = 2; c < cells.size(); ++c) {
@@ -142,23 +140,41 @@ class TrcParser {
         recording_.columns.push_back(std::string(cells[c]).append(axis));
     }
     const std::size_t found = recording_.columns.size() / 3;
-    if (stated_markers_ && *stated_markers_ < static_cast<double>(found))
-      fail(fmt::format("expected {} markers (NumMarkers), found {}", *stated_markers_, found));
+    has_virtual_ = stated_markers_ && *stated_markers_ < static_cast<double>(found);
     has_unnamed_ = stated_markers_ && *stated_markers_ > static_cast<double>(found);
   }
 
   void coordinate_labels() {
     expect_line("X1, Y1, Z1 ...");
     std::size_t count = 0;
-    for (const std::string_view cell : cells_of(lines_.line())) {
+    for (const std::string_view cell : trc_cells(lines_.line())) {
       if (cell.empty()) continue;
       if ((cell[0] & ~0x20) != coordinates[count++ % coordinates.size()])
         fail(fmt::format("expected X1, Y1, Z1 ..., found {}", excerpt(cell)));
     }
     const std::size_t named = recording_.columns.size();
+    if (has_virtual_) {
+      virtual_markers(count);
+      return;
+    }
     if (count < named || (count > named && !has_unnamed_))
       fail(fmt::format("expected X, Y, Z of the {} markers above, found {} cells", named / 3,
                        count));
+  }
+
+  // Cortex does not count markers in NumMarkers, and in some versions not in the labels, that it
+  // has calculated from others. Rows may have them or not.
+  void virtual_markers(std::size_t labels) {
+    const std::size_t named = recording_.columns.size();
+    if (labels != named && static_cast<double>(labels) != 3 * *stated_markers_)
+      throw FileError(
+          file_, markers_line_,
+          fmt::format("expected {} markers (NumMarkers), found {}", *stated_markers_, named / 3));
+    TextLines row = lines_;
+    while (row.next() && is_trc_blank(row.line())) {
+    }
+    if (labels != named && trc_cells(row.line()).size() <= labels + 2)
+      recording_.columns.resize(labels);
   }
 
   void rows() {
@@ -167,7 +183,7 @@ class TrcParser {
     rows_line_ = lines_.number();
     RowCollector frames(static_cast<Index>(recording_.columns.size()));
     do
-      if (!lines_.is_blank()) row(frames.add(lines_.bytes_left()));
+      if (!is_trc_blank(lines_.line())) row(frames.add(lines_.bytes_left()));
     while (lines_.next());
     recording_.samples = frames.take();
   }
@@ -242,8 +258,8 @@ class TrcParser {
   TextLines lines_;
   Recording recording_;
   std::optional<double> stated_markers_;
-  bool has_unnamed_ = false;
-  std::size_t rate_line_ = 0, rows_begin_ = 0, rows_line_ = 0;
+  bool has_unnamed_ = false, has_virtual_ = false;
+  std::size_t markers_line_ = 0, rate_line_ = 0, rows_begin_ = 0, rows_line_ = 0;
   Times times_;
   std::optional<double> column_rate_;  // that DataRate and Time agree on
 };

@@ -39,7 +39,7 @@ class TrcRewriter {
     TextLines lines(document_.text, document_.rows, document_.first_line);
     Index frame = -document_.first_frame;
     while (lines.next()) {
-      const bool is_row = !lines.is_blank();
+      const bool is_row = !is_trc_blank(lines.line());
       if (is_row && frame == document_.frames) break;
       const bool is_wanted = is_row ? frame >= 0 : frame > 0;
       if (is_row && is_wanted) row(lines.line(), samples_.row(frame));
@@ -72,20 +72,20 @@ class TrcRewriter {
   // All lines above the rows, with the number of frames that there are.
   void head() {
     const std::string_view head = std::string_view(document_.text).substr(0, document_.rows);
-    std::size_t place = head.size(), length = 0;
+    std::string_view count = head.substr(head.size());
     std::vector<std::string_view> names;
     int line = 0;  // that are not blank
     for (TextLines lines(head); lines.next();) {
-      if (lines.is_blank()) continue;
+      if (is_trc_blank(lines.line())) continue;
       ++line;
-      std::size_t index = 0;
-      for (TrcCells cells(lines.line()); cells.next(); ++index) {
-        if (line == 2) names.push_back(cells.cell());
-        if (line != 3 || index >= names.size() || names[index] != "NumFrames") continue;
-        place = static_cast<std::size_t>(cells.cell().data() - head.data());
-        length = cells.cell().size();
-      }
+      if (line == 2) names = trc_cells(lines.line());
+      if (line != 3) continue;
+      const std::vector<std::string_view> values = trc_settings(lines.line(), names.size());
+      for (std::size_t i = 0; i < std::min(names.size(), values.size()); ++i)
+        if (names[i] == "NumFrames") count = values[i];
     }
+    const auto place = static_cast<std::size_t>(count.data() - head.data());
+    const std::size_t length = count.size();
     text_ = head.substr(0, place);
     if (place < head.size()) text_ += fmt::to_string(document_.frames);
     text_ += head.substr(place + length);
@@ -106,7 +106,7 @@ class TrcRewriter {
     }
     text_.append(copied, line.data() + line.size());
     for (; column < samples.size(); ++column) {
-      text_ += '\t';
+      text_ += cells.separator();
       if (column >= 0) put(samples[column], true);
     }
   }

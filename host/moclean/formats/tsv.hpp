@@ -9,4 +9,8 @@ namespace moclean {
 /// names and rows.
 extern const Format tsv_format;
 
+/// Any other text with a table (.txt): of QTM, Vicon Nexus or numpy.savetxt, whose first lines tell
+/// the separator. Likewise; folders of recordings leave such files out, as they may be any text.
+extern const Format txt_format;
+
 }  // namespace moclean

@@ -13,6 +13,7 @@
 #include "moclean/formats/amc.hpp"
 #include "moclean/formats/find_skeleton.hpp"
 #include "moclean/formats/formats.hpp"
+#include "moclean/formats/tsv.hpp"
 
 namespace moclean {
 namespace {
@@ -23,6 +24,9 @@ bool is_hidden(const fs::path& file) {
   const std::string name = file.filename().string();
   return name.starts_with('.') || name.starts_with('~');
 }
+
+// A text in a folder may be anything, a readme; only whoever names it says that it is a table.
+bool is_looked_for(const Format& format) { return can_read(format) && &format != &txt_format; }
 
 // `NAME.raw.EXT` beside a `NAME.EXT`.
 bool is_kept_raw(const fs::path& file) {
@@ -51,7 +55,7 @@ class Walk {
       links = std::move(deeper);
     }
     if (found_.empty() && !met_again_)
-      throw FileError(folder, fmt::format("holds no recording ({})", any_extension(can_read)));
+      throw FileError(folder, fmt::format("holds no recording ({})", any_extension(is_looked_for)));
     std::ranges::sort(found_);
     return std::move(found_);
   }
@@ -84,7 +88,8 @@ class Walk {
 
   void add(const fs::path& file) {
     std::error_code ignored;
-    if (fs::is_regular_file(file, ignored) && is_of_format(file, can_read) && !is_kept_raw(file))
+    if (fs::is_regular_file(file, ignored) && is_of_format(file, is_looked_for) &&
+        !is_kept_raw(file))
       found_.push_back(file);
   }
 
