@@ -10,9 +10,11 @@
 #include "moclean/formats/c3d.hpp"
 #include "moclean/formats/csv.hpp"
 #include "moclean/formats/npy.hpp"
+#include "moclean/formats/table_document.hpp"
 #include "moclean/formats/trc.hpp"
 
 #include "formats/c3d_maker.hpp"
+#include "formats/table_text.hpp"
 #include "formats/tiny_files.hpp"
 
 namespace moclean {
@@ -73,6 +75,20 @@ std::vector<Format> formats() {
       {"deeplabcut", "scorer,n,n,n\nbodyparts,a,a,a\ncoords,x,y,likelihood\n0,1,2,0.5\n1,3,4,0\n",
        parse_table},
       {"opensim", std::string(test::tiny_mot), parse_table},
+      {"vectors",
+       "DataRate=100\nDataType=Vec3\nUnits=mm\nendheader\ntime\ta\tb\n0\t1,2,3\t4,5,6\n"
+       "0.01\t1,2,3\tnan,nan,nan\n",
+       parse_table},
+      {"workstation",
+       "Title\nDate:\n\nTRAJECTORIES\n100,Hz\n,A,,\nField #,X,Y,Z\n1,1,2,3\n2,4,5,6\n",
+       parse_table},
+      {"levels", "part,a,a,a\ncoord,x,y,likelihood\nframe,,,\n0,1.5,2,0.5\n1,3,4,0\n", parse_table},
+      {"clock", "Time;\"A, x\";\"A, y\"\n23:59:59,5;1,5;2\n00:00:00,0;3;4\n00:00:00,5;5;6\n",
+       parse_table},
+      {"trc_with_commas",
+       "PathFileType  4,(X/Y/Z) x y\nDataRate,NumFrames,NumMarkers,Units\n100,,2,,1,,mm\n"
+       "Frame#,Time,A,,\n,,X1,Y1,Z1\n\n1,0,1,2,3\n2,0.01,,,\n",
+       [](std::string_view text) { return parse_trc(text, "x.trc"); }},
       {"c3d", test::C3dMaker{.frames = std::vector(16, std::vector<double>(8, 1.0))}.bytes(),
        [](std::string_view bytes) { return parse_c3d(bytes, "x.c3d"); }},
       {"npy", tiny_npy(), [](std::string_view text) { return parse_npy(text, "x.npy"); }}};
@@ -104,34 +120,39 @@ TEST_P(Corruption, EveryPrefixParsesOrThrows) {
   EXPECT_FALSE(parses(format, format.file.substr(0, format.file.size() / 3)));
 }
 
-TEST_P(Corruption, MutatedBytesParseOrThrow) {
-  const Format& format = GetParam();
+// A few bytes changed, taken out or put in.
+std::string mutated(std::string text, Random& random) {
   using namespace std::string_literals;
   const std::string alphabet = "0123456789.-+eE{}()[]:,#'\" \t\r\nnanROOTJOINT\0\xFF"s;
+  for (std::uint64_t changes = 1 + random.below(4); changes > 0; --changes) {
+    const std::size_t place = random.below(text.size());
+    const char byte = alphabet[random.below(alphabet.size())];
+    switch (random.below(4)) {
+      case 0:
+        text.insert(place, 1, byte);
+        break;
+      case 1:
+        text.erase(place, 1 + random.below(8));
+        break;
+      case 2:
+        text.insert(place, text.substr(random.below(text.size()), random.below(60)));
+        break;
+      default:
+        text[place] = byte;
+    }
+    if (text.empty()) text.push_back(' ');
+  }
+  return text;
+}
+
+TEST_P(Corruption, MutatedBytesParseOrThrow) {
+  const Format& format = GetParam();
   Random random(2026);
   int parsed = 0;
   constexpr int count = 4000;
 
   for (int i = 0; i < count; ++i) {
-    std::string text = format.file;
-    for (std::uint64_t changes = 1 + random.below(4); changes > 0; --changes) {
-      const std::size_t place = random.below(text.size());
-      const char byte = alphabet[random.below(alphabet.size())];
-      switch (random.below(4)) {
-        case 0:
-          text.insert(place, 1, byte);
-          break;
-        case 1:
-          text.erase(place, 1 + random.below(8));
-          break;
-        case 2:
-          text.insert(place, text.substr(random.below(text.size()), random.below(60)));
-          break;
-        default:
-          text[place] = byte;
-      }
-      if (text.empty()) text.push_back(' ');
-    }
+    const std::string text = mutated(format.file, random);
     EXPECT_NO_THROW(parsed += parses(format, text)) << "mutation " << i << ":\n" << text;
   }
 
@@ -139,6 +160,41 @@ TEST_P(Corruption, MutatedBytesParseOrThrow) {
   EXPECT_GT(parsed, count / 100);
   EXPECT_LT(parsed, count - count / 100);
 }
+
+class CorruptTables : public testing::TestWithParam<Format> {};
+
+// Whatever is read as a table is written again as it was.
+TEST_P(CorruptTables, ComeBackByteForByteIfTheyAreRead) {
+  const Format& format = GetParam();
+  Random random(2027);
+  int count = 0;
+
+  for (int i = 0; i < 400; ++i) {
+    const std::string text = mutated(format.file, random);
+    try {
+      EXPECT_EQ(test::written_again(format.parse(text)), text);
+      ++count;
+    } catch (const Error&) {
+    }
+  }
+
+  EXPECT_GT(count, 4);
+}
+
+std::vector<Format> tables() {
+  std::vector<Format> found = formats();
+  std::erase_if(found, [](const Format& format) {
+    try {
+      return !table_of(format.parse(format.file), ".csv");
+    } catch (const Error&) {
+      return false;
+    }
+  });
+  return found;
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, CorruptTables, testing::ValuesIn(tables()),
+                         [](const auto& format) { return format.param.name; });
 
 INSTANTIATE_TEST_SUITE_P(Formats, Corruption, testing::ValuesIn(formats()),
                          [](const auto& format) { return format.param.name; });

@@ -62,6 +62,16 @@ TEST(TableTimes, OfAClockTellTheRate) {
   EXPECT_EQ(test::written_again(table(dated)), dated);
 }
 
+// At 360 and 400 Hz whole milliseconds are 2 or 3 apart.
+TEST(TableTimes, OfFewDigitsTellTheRateOfAllSteps) {
+  for (const double rate : {240., 360., 400., 500.}) {
+    std::string text = "time,a\n";
+    for (int f = 0; f < 900; ++f) text += fmt::format("{:.3f},1\n", f / rate);
+
+    EXPECT_NEAR(table(text).frame_rate, rate, 1e-3 * rate) << rate;
+  }
+}
+
 TEST(TableTimes, OfAClockGoOnBehindMidnight) {
   const Recording recording =
       table("clock;A.x;A.y\n23:59:59,75;1;2\n00:00:00,00;1,5;2\n00:00:00,25;2;3\n");

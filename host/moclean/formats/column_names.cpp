@@ -90,16 +90,22 @@ Words words_of(std::string_view name) {
   return words;
 }
 
+using WordSet = std::unordered_set<std::string_view>;
+
 bool is_angle_word(const std::string& word) {
-  return is_one_of(word, {"rot",       "rotation",  "rotations",  "angle",  "angles",      "ang",
-                          "euler",     "quat",      "quaternion", "orient", "orientation", "rpy",
-                          "xrotation", "yrotation", "zrotation",  "roll",   "pitch",       "yaw",
-                          "qw",        "qx",        "qy",         "qz"});
+  static const WordSet words = {"rot",         "rotation", "rotations", "angle",      "angles",
+                                "ang",         "euler",    "quat",      "quaternion", "orient",
+                                "orientation", "rpy",      "xrotation", "yrotation",  "zrotation",
+                                "roll",        "pitch",    "yaw",       "qw",         "qx",
+                                "qy",          "qz"};
+  return words.contains(word);
 }
 
 bool is_vector_word(const std::string& word) {
-  return is_one_of(word, {"vel", "velocity", "acc", "acce", "accel", "acceleration", "gyro", "mag",
-                          "force", "moment", "torque", "power", "grf", "jerk", "omega", "angvel"});
+  static const WordSet words = {"vel",  "velocity", "acc",   "acce",   "accel",  "acceleration",
+                                "gyro", "mag",      "force", "moment", "torque", "power",
+                                "grf",  "jerk",     "omega", "angvel"};
+  return words.contains(word);
 }
 
 constexpr std::array<std::string_view, 14> confidence_words = {
@@ -196,38 +202,40 @@ std::vector<AxisName> axis_names(std::string_view full_name) {
 
 NamedQuantity named_quantity(std::string_view name) {
   const std::string text = squeezed(name);
-  static const std::unordered_set<std::string_view> times = {"time",        "t",
-                                                             "times",       "timestamp",
-                                                             "timestamps",  "timesec",
-                                                             "timesecs",    "timeseconds",
-                                                             "times",       "timems",
-                                                             "timemsec",    "timemilliseconds",
-                                                             "timeus",      "timens",
-                                                             "tms",         "tsec",
-                                                             "seconds",     "secs",
-                                                             "sec",         "milliseconds",
-                                                             "ms",          "msec",
-                                                             "unixtime",    "unixtimestamp",
-                                                             "epoch",       "epochms",
-                                                             "timestampms", "timestamps",
-                                                             "timestampus", "timestampns",
-                                                             "elapsed",     "elapsedtime",
-                                                             "zeit",        "temps",
-                                                             "tiempo",      "relativetime",
-                                                             "capturetime", "recordingtime",
-                                                             "datetime",    "clock",
-                                                             "clocktime",   "timeofday",
-                                                             "localtime",   "timelocal",
-                                                             "utc",         "utctime",
-                                                             "timeutc",     "timestamputc",
-                                                             "systemtime",  "isotime"};
+  static const WordSet times = {"time",        "t",
+                                "times",       "timestamp",
+                                "timestamps",  "timesec",
+                                "timesecs",    "timeseconds",
+                                "times",       "timems",
+                                "timemsec",    "timemilliseconds",
+                                "timeus",      "timens",
+                                "tms",         "tsec",
+                                "seconds",     "secs",
+                                "sec",         "milliseconds",
+                                "ms",          "msec",
+                                "unixtime",    "unixtimestamp",
+                                "epoch",       "epochms",
+                                "timestampms", "timestamps",
+                                "timestampus", "timestampns",
+                                "elapsed",     "elapsedtime",
+                                "zeit",        "temps",
+                                "tiempo",      "relativetime",
+                                "capturetime", "recordingtime",
+                                "datetime",    "clock",
+                                "clocktime",   "timeofday",
+                                "localtime",   "timelocal",
+                                "utc",         "utctime",
+                                "timeutc",     "timestamputc",
+                                "systemtime",  "isotime"};
   if (times.contains(text)) return NamedQuantity::time;
-  if (is_one_of(text, {"frame", "frames", "frameindex", "frameidx", "frameid", "framenumber",
-                       "framenum", "frameno", "frame#", "framenr", "fnum", "framecount", "fno"}))
-    return NamedQuantity::frame;
-  if (text.empty() || text.starts_with("unnamed") ||
-      is_one_of(text, {"index", "idx", "id", "i", "n", "no", "nr", "#", "item", "sample", "samples",
-                       "samplenumber", "row", "rowid", "count", "counter", "level0"}))
+  static const WordSet frames = {"frame",       "frames",     "frameindex", "frameidx", "frameid",
+                                 "framenumber", "framenum",   "frameno",    "frame#",   "framenr",
+                                 "fnum",        "framecount", "fno"};
+  if (frames.contains(text)) return NamedQuantity::frame;
+  static const WordSet running = {"index", "idx",   "id",    "i",       "n",       "no",
+                                  "nr",    "#",     "item",  "sample",  "samples", "samplenumber",
+                                  "row",   "rowid", "count", "counter", "level0"};
+  if (text.empty() || text.starts_with("unnamed") || running.contains(text))
     return NamedQuantity::running;
   const Words words = words_of(without_unit(name));
   if (words.empty()) return NamedQuantity::none;

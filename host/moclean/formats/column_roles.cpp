@@ -172,7 +172,8 @@ class RoleFinder {
         std::ranges::any_of(found_.points, &std::string::empty, &ColumnPoint::name);
     DistinctNames distinct;
     std::unordered_map<std::string, int> counts;
-    for (const ColumnPoint& point : found_.points) ++counts[point.name];
+    if (!remarks_.empty())
+      for (const ColumnPoint& point : found_.points) ++counts[point.name];
     std::size_t number = 0;
     for (ColumnPoint& point : found_.points) {
       stems_.push_back(in_lower_case(point.name));
@@ -187,21 +188,25 @@ class RoleFinder {
   }
 
   void confidences() {
-    std::unordered_map<std::string, std::vector<std::size_t>> points;
-    for (std::size_t p = stems_.size(); p-- > 0;) points[stems_[p]].push_back(p);
+    std::vector<std::pair<std::size_t, std::vector<std::string>>> judging;  // columns, whose points
     for (std::size_t c = 0; c < names_.size(); ++c) {
       if (is_taken_[c]) continue;
-      for (const std::string& stem : points_judged_by(names_[c])) {
+      if (std::vector<std::string> stems = points_judged_by(names_[c]); !stems.empty())
+        judging.emplace_back(c, std::move(stems));
+      if (quantities_[c] == NamedQuantity::confidence) take(c, ColumnRole::confidence);
+    }
+    if (judging.empty()) return;
+    std::unordered_map<std::string, std::vector<std::size_t>> points;
+    for (std::size_t p = stems_.size(); p-- > 0;) points[stems_[p]].push_back(p);
+    for (const auto& [column, stems] : judging)
+      for (const std::string& stem : stems) {
         const auto place = points.find(stem);
         if (place == points.end() || place->second.empty()) continue;
-        found_.points[place->second.back()].confidence = c;
+        found_.points[place->second.back()].confidence = column;
         place->second.pop_back();
-        take(c, ColumnRole::confidence);
+        take(column, ColumnRole::confidence);
         break;
       }
-      if (!is_taken_[c] && quantities_[c] == NamedQuantity::confidence)
-        take(c, ColumnRole::confidence);
-    }
   }
 
   void rest() {

@@ -41,9 +41,9 @@ struct Row {
 };
 
 std::optional<std::size_t> column_of(const ColumnRoles& roles, NamedQuantity quantity) {
+  const ColumnRole role = quantity == NamedQuantity::time ? ColumnRole::time : ColumnRole::index;
   for (std::size_t c = 0; c < roles.names.size(); ++c)
-    if (named_quantity(roles.names[c]) == quantity && roles.roles[c] != ColumnRole::coordinate)
-      return c;
+    if (roles.roles[c] == role && named_quantity(roles.names[c]) == quantity) return c;
   return std::nullopt;
 }
 
@@ -128,8 +128,9 @@ void refuse_long_table(const TableText& table, const TableShape& shape) {
     if (key) refuse(pair->second.line, *key);
   }
   // Without repeated frames only a table of one point can be one, by the name of its column.
+  if (roles.points.empty() || roles.points.size() > most_points) return;
   const auto key = column_of_points(roles);
-  if (!key || roles.points.empty() || roles.points.size() > most_points) return;
+  if (!key) return;
   const auto pair = rows_that(false, table.text, shape, *key);
   if (pair) refuse(pair->second.line, *key);
 }

@@ -13,6 +13,7 @@
 #include "moclean/formats/table_number.hpp"
 #include "moclean/formats/table_rows.hpp"
 #include "moclean/formats/table_shape.hpp"
+#include "moclean/formats/table_times.hpp"
 #include "moclean/formats/text_lines.hpp"
 #include "moclean/formats/text_scanner.hpp"
 
@@ -60,10 +61,12 @@ bool are_numbers(std::string_view line, char separator) {
 constexpr std::string_view separators = ",;\t|";
 
 // How well a separator fits to a line of names and rows: 3 if all have as many cells, and no cell
-// that is not in quotes holds another separator unless it is a number; 2 if the first row has as
-// many; 1 if it stands among the names.
+// that is not in quotes holds another separator unless it is a number or a time; 2 if the first row
+// has as many; 1 if it stands among the names; 0 if it does not, or tears a name in quotes.
 int fit(char separator, std::string_view names, const std::vector<std::string_view>& rows) {
-  const std::size_t count = count_cells(names, separator);
+  std::size_t count = 0;
+  for (TableCells cells(names, separator); cells.next(); ++count)
+    if (!cells.is_quoted() && cells.text().find('"') != std::string_view::npos) return 0;
   if (count < 2) return 0;
   if (rows.empty() || count_cells(rows[0], separator) != count) return 1;
   for (const std::string_view row : rows) {
@@ -71,7 +74,7 @@ int fit(char separator, std::string_view names, const std::vector<std::string_vi
     for (TableCells cells(row, separator); cells.next(); ++found) {
       const bool is_whole = cells.is_quoted() ||
                             cells.text().find_first_of(separators) == std::string_view::npos ||
-                            is_number_cell(cells.text());
+                            is_number_cell(cells.text()) || clock_time(cells.text());
       if (!is_whole) return 2;
     }
     if (found != count) return 2;

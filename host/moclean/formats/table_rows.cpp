@@ -94,9 +94,11 @@ class RowReader {
       column = quick_cells(column, position, end);
       if (column == uses_.size() || position > end) break;
       TableCells cells({position, end}, shape_.separator);
-      cells.next();
-      if (!use(column++, cells)) return;
-      position = cells.after() == end ? end + 1 : cells.after() + 1;
+      do {
+        cells.next();
+        if (!use(column++, cells)) return;
+        position = cells.after() + 1;
+      } while (position < end && *position == '"' && column < uses_.size());
     }
     if (is_quick_ && column == uses_.size() && position <= end) surplus(position, end);
     if (!is_quick_) {

@@ -21,7 +21,7 @@ double usual_step(const std::vector<double>& times, bool& counts) {
   const double median = *middle;
   double sum = 0, count = 0;
   for (const double step : steps)
-    if (step < 1.5 * median && median < 1.5 * step) {
+    if (std::abs(step - median) <= 0.5 * median * (1 + 1e-6)) {
       sum += step;
       ++count;
     }
