@@ -60,7 +60,7 @@ Decomposition decompose(const GroupLimits& limits, const std::vector<Matrix>& ma
   return decompose(eigen, matrices);
 }
 
-std::vector<Matrix> every_kind(Index n) {
+std::vector<Matrix> kinds_of_order(Index n) {
   std::vector<Matrix> matrices;
   for (const test::SymmetricKind& kind : test::symmetric_kinds()) matrices.push_back(kind.make(n));
   return matrices;
@@ -92,7 +92,7 @@ class GroupEigenTest : public testing::TestWithParam<std::tuple<int, Index>> {};
 
 TEST_P(GroupEigenTest, DecomposesEveryKindOfMatrixToRounding) {
   const auto& [work_group, n] = GetParam();
-  const std::vector<Matrix> matrices = every_kind(n);
+  const std::vector<Matrix> matrices = kinds_of_order(n);
 
   const Decomposition result = decompose({.work_group = work_group}, matrices);
 
@@ -130,7 +130,7 @@ TEST_P(GroupEigenTest, ClearsThePadding) {
   EXPECT_TRUE((result.values[0].tail(z.cols() - n).array() == 0).all());
 }
 
-std::string name_of(const testing::TestParamInfo<std::tuple<int, Index>>& info) {
+std::string name_of_group_eigen(const testing::TestParamInfo<std::tuple<int, Index>>& info) {
   const auto& [work_group, n] = info.param;
   return "WG" + std::to_string(work_group) + "_n" + std::to_string(n);
 }
@@ -139,13 +139,13 @@ INSTANTIATE_TEST_SUITE_P(Sizes, GroupEigenTest,
                          testing::Combine(testing::Values(64, 128, 256),
                                           testing::Values<Index>(1, 2, 3, 5, 16, 31, 64, 93, 128,
                                                                  200)),
-                         name_of);
+                         name_of_group_eigen);
 INSTANTIATE_TEST_SUITE_P(Narrow, GroupEigenTest,
                          testing::Combine(testing::Values(1, 4), testing::Values<Index>(1, 5, 31)),
-                         name_of);
+                         name_of_group_eigen);
 
 TEST(GroupEigen, GivesTheSameBitsInLocalAndInGlobalMemory) {
-  const std::vector<Matrix> matrices = every_kind(93);
+  const std::vector<Matrix> matrices = kinds_of_order(93);
   GroupEigen local(test::device()), global(test::device(), {.local_memory = 8192});
   ASSERT_LE(local.local_memory(93, true), test::device().info().local_memory);
   ASSERT_GT(global.local_memory(93, true), 8192);
@@ -157,7 +157,7 @@ TEST(GroupEigen, GivesTheSameBitsInLocalAndInGlobalMemory) {
 }
 
 TEST(GroupEigen, OfAMatrixDoesNotDependOnItsNeighbours) {
-  const std::vector<Matrix> matrices = every_kind(31);
+  const std::vector<Matrix> matrices = kinds_of_order(31);
   const Decomposition together = decompose({}, matrices);
 
   for (std::size_t b = 0; b < matrices.size(); ++b) {
