@@ -64,6 +64,7 @@ INSTANTIATE_TEST_SUITE_P(
         ",nose,nose,ear,ear\n,x,y,x,y\n0,1,2,3,4\n1,5,6,7,8\n",
         ",nose,nose,ear,ear\n,x,y,x,y\nframe,,,,\n0,1,2,3,4\n1,5,6,7,8\n",
         ",x,y,x,y\nkeypoint,nose,nose,ear,ear\nframe,,,,\n0,1,2,3,4\n1,5,6,7,8\n",
+        "coords,x,y,x,y\nbodyparts,nose,nose,ear,ear\n0,1,2,3,4\n1,5,6,7,8\n",
         "scorer;net;net;net;net\npart;nose;nose;ear;ear\ncoord;x;y;x;y\n0;1;2;3;4\n1;5;6;7;8\n",
         "part,,nose,nose,ear,ear\ncoord,,x,y,x,y\nframe,time,,,,\n0,0,1,2,3,4\n1,0.1,5,6,7,8\n"));
 

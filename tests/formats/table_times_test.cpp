@@ -34,6 +34,7 @@ TEST(ClockTimes, AreReadWithAndWithoutDateAndZone) {
   expect_clock("2000-03-01 00:00:00", 951868800, 0, true);  // behind a leap day
   expect_clock("2024/05/01 12:00:00.5+02:00", 1714557600, 0.5, true);
   expect_clock("2024-05-01T12:00:00-0530", 1714584600, 0, true);
+  expect_clock("2024-05-01T12:00:00+0030", 1714563000, 0, true);
   expect_clock("2024-05-01T12:00:00.000001 UTC", 1714564800, 1e-6, true);
 }
 

@@ -111,7 +111,7 @@ std::string pivot(const ColumnRoles& roles, std::size_t key) {
 }  // namespace
 
 void refuse_long_table(const TableText& table, const TableShape& shape) {
-  constexpr std::size_t most_points = 2;  // x, y, z, and perhaps those of the picture
+  constexpr std::size_t most_of_a_row = 2;  // x, y, z, and perhaps those of the picture
   const ColumnRoles& roles = shape.roles;
   if (!shape.dialect.empty()) return;
   const auto refuse = [&](std::size_t line, std::size_t key) {
@@ -128,7 +128,7 @@ void refuse_long_table(const TableText& table, const TableShape& shape) {
     if (key) refuse(pair->second.line, *key);
   }
   // Without repeated frames only a table of one point can be one, by the name of its column.
-  if (roles.points.empty() || roles.points.size() > most_points) return;
+  if (roles.points.empty() || roles.points.size() > most_of_a_row) return;
   const auto key = column_of_points(roles);
   if (!key) return;
   const auto pair = rows_that(false, table.text, shape, *key);

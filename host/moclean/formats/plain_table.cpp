@@ -177,10 +177,10 @@ class PlainHead {
 
   // Some lines behind this one, which has the names.
   std::vector<std::string_view> rows_after() const {
-    constexpr std::size_t most = 8, most_bytes = 1 << 16;
+    constexpr std::size_t most = 8, byte_limit = 1 << 16;
     std::vector<std::string_view> rows;
     std::size_t bytes = 0;
-    for (TextLines after = lines_; rows.size() < most && bytes < most_bytes && after.next();) {
+    for (TextLines after = lines_; rows.size() < most && bytes < byte_limit && after.next();) {
       if (is_no_row(after.line(), 0)) continue;
       rows.push_back(after.line());
       bytes += after.line().size();

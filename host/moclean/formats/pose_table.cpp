@@ -43,9 +43,11 @@ std::optional<TableShape> pose_shape(const TableText& table) {
   const std::vector<std::string>& coords = labels["coords"];
   const std::vector<std::string>& parts = labels["bodyparts"];
   std::vector<std::string>& individuals = labels["individuals"];
-  if (coords.size() < 3 || parts.size() != coords.size())
+  if (coords.size() < 3 || parts.size() != coords.size()) {
+    if (!labels.contains("scorer")) return std::nullopt;  // of another order: levels_shape()
     throw FileError(table.file, lines.number(),
                     "expected lines bodyparts and coords with a cell per column");
+  }
   individuals.resize(coords.size());
   TableShape shape;
   shape.dialect = "DeepLabCut table";

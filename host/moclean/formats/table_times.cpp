@@ -72,9 +72,10 @@ std::optional<std::int64_t> zone_offset(std::string_view text) {
   if (text.empty() || text == "Z" || text == " UTC") return 0;
   const bool is_behind = text[0] == '-';
   if (!take(text, '+', '-')) return std::nullopt;
-  const auto hours = take_digits(text, 2, text.size() == 4 ? 4 : 2);
+  const bool is_joined = text.size() == 4;
+  const auto hours = take_digits(text, 2, is_joined ? 4 : 2);
   if (!hours) return std::nullopt;
-  std::int64_t minutes = *hours > 99 ? 60 * (*hours / 100) + *hours % 100 : 60 * *hours;
+  std::int64_t minutes = is_joined ? 60 * (*hours / 100) + *hours % 100 : 60 * *hours;
   if (take(text, ':', ':')) {
     const auto rest = take_digits(text, 2, 2);
     if (!rest) return std::nullopt;
