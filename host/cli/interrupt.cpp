@@ -1,15 +1,27 @@
 #include "cli/interrupt.hpp"
 
-#include <chrono>
 #include <ctime>
+#include <mutex>
+#include <optional>
+#include <string_view>
+
+#include <unistd.h>
+
+#include "moclean/formats/unfinished.hpp"
+
+#include "cli/commands/commands.hpp"
 
 namespace moclean::cli {
 namespace {
 
+// Signals are of the process, and so is what they are to stop.
+std::mutex work_mutex;
+std::optional<std::stop_source> work;
+
 sigset_t signals_not_ignored() {
   sigset_t signals;
   sigemptyset(&signals);
-  for (const int signal : {SIGINT, SIGTERM}) {
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGXCPU}) {
     struct sigaction action {};
     sigaction(signal, nullptr, &action);
     if (action.sa_handler != SIG_IGN) sigaddset(&signals, signal);
@@ -17,27 +29,47 @@ sigset_t signals_not_ignored() {
   return signals;
 }
 
+// Other threads go on meanwhile, so destructors of static objects must not run.
+[[noreturn]] void end_program() {
+  remove_unfinished();
+  constexpr std::string_view message = "moclean: interrupted\n";
+  [[maybe_unused]] const ssize_t ignored = write(STDERR_FILENO, message.data(), message.size());
+  _exit(static_cast<int>(ExitCode::interrupted));
+}
+
+void watch(const sigset_t& signals, const std::stop_token& done) {
+  constexpr timespec pause{.tv_sec = 0, .tv_nsec = 50'000'000};
+  while (!done.stop_requested()) {
+    const bool signalled = sigtimedwait(&signals, nullptr, &pause) > 0;
+    const std::lock_guard lock(work_mutex);
+    const bool asked_before = work && work->stop_requested();
+    if (signalled && (!work || asked_before)) end_program();
+    if (signalled) work->request_stop();
+    if ((signalled || asked_before) && waits_outside()) end_program();
+  }
+}
+
 }  // namespace
 
-Interrupt::Interrupt() : signals_(signals_not_ignored()) {
-  pthread_sigmask(SIG_BLOCK, &signals_, &mask_before_);
-  watcher_ = std::jthread([this](std::stop_token done) { watch(done); });
+SignalWatch::SignalWatch() : signals_(signals_not_ignored()) {
+  struct sigaction ignore {};
+  ignore.sa_handler = SIG_IGN;
+  for (const int signal : {SIGPIPE, SIGXFSZ}) sigaction(signal, &ignore, nullptr);
+  pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
+  watcher_ = std::jthread([this](const std::stop_token& done) { watch(signals_, done); });
+}
+
+// The signals stay blocked: what comes after is the end of the program.
+SignalWatch::~SignalWatch() = default;
+
+Interrupt::Interrupt() {
+  const std::lock_guard lock(work_mutex);
+  work = source_;
 }
 
 Interrupt::~Interrupt() {
-  watcher_.request_stop();
-  watcher_.join();
-  pthread_sigmask(SIG_SETMASK, &mask_before_, nullptr);
-}
-
-void Interrupt::watch(std::stop_token done) {
-  constexpr timespec pause{.tv_sec = 0, .tv_nsec = 50'000'000};
-  while (!done.stop_requested()) {
-    if (sigtimedwait(&signals_, nullptr, &pause) <= 0) continue;
-    source_.request_stop();
-    pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);  // a second signal ends the program
-    while (!done.stop_requested()) nanosleep(&pause, nullptr);
-  }
+  const std::lock_guard lock(work_mutex);
+  work.reset();
 }
 
 }  // namespace moclean::cli

@@ -2,33 +2,74 @@
 // message and an exit code.
 
 #include <algorithm>
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <new>
 #include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include "moclean/core/error.hpp"
 #include "moclean/core/version.hpp"
+#include "moclean/formats/unfinished.hpp"
 
 #include "cli/commands/commands.hpp"
+#include "cli/interrupt.hpp"
 #include "cli/nearest.hpp"
 #include "cli/printing/say.hpp"
+#include "cli/printing/standard_output.hpp"
 
 namespace moclean::cli {
 namespace {
 
-ExitCode fail(ExitCode code, std::string_view message) {
+ExitCode fail(ExitCode code, const std::string& message) {
   warn("{}", message);
   return code;
 }
 
-// The command the user got wrong, or the program itself if no command was recognised.
-std::string help_command(const CLI::App& program) {
+// A descriptor that is closed would be that of the next file that is opened, and what is printed
+// would go into it. Opened for the other direction, it is an error to use it.
+void open_standard_streams() {
+  for (const auto& [stream, mode] :
+       {std::pair{STDIN_FILENO, O_WRONLY}, {STDOUT_FILENO, O_RDONLY}, {STDERR_FILENO, O_RDONLY}})
+    if (fcntl(stream, F_GETFD) < 0) open("/dev/null", mode);  // gets the lowest number
+}
+
+// Where an exception may not pass: no memory in a function of others, say, that promises to throw
+// nothing.
+[[noreturn]] void end_at_once() {
+  remove_unfinished();
+  constexpr std::string_view message = "moclean: cannot go on, there is not enough memory\n";
+  [[maybe_unused]] const ssize_t ignored = write(STDERR_FILENO, message.data(), message.size());
+  _exit(static_cast<int>(ExitCode::failed));
+}
+
+// Whoever reads from a pipe may have enough and go: no word then, as everywhere.
+ExitCode with_output_sent(ExitCode code) {
+  const int error = output_failure();
+  if (error == 0) return code;
+  if (error == EPIPE) {
+    std::signal(SIGPIPE, SIG_DFL);
+    std::raise(SIGPIPE);
+  }
+  warn("standard output: cannot be written: {}", std::generic_category().message(error));
+  return code == ExitCode::done ? ExitCode::failed : code;
+}
+
+// With the command that was given, or the program alone if none was recognised.
+std::string command_name(const CLI::App& program) {
   const auto chosen = program.get_subcommands();
-  return chosen.empty() ? "moclean --help"
-                        : fmt::format("moclean {} --help", chosen[0]->get_name());
+  return chosen.empty() ? "moclean" : fmt::format("moclean {}", chosen[0]->get_name());
 }
 
 std::vector<std::string> command_names(const CLI::App& program) {
@@ -50,6 +91,7 @@ std::string problem(const CLI::App& program, const std::vector<std::string>& arg
                     const CLI::ParseError& error) {
   const CLI::App* command = &program;
   for (const std::string& argument : arguments) {
+    if (argument == "--") break;  // names of files follow
     const std::string name = argument.substr(0, argument.find('='));
     const std::vector<std::string> commands = command_names(*command);
     if (std::ranges::find(commands, name) != commands.end()) {
@@ -90,14 +132,25 @@ ExitCode run_program(int count, char** arguments) {
       program.exit(error);
       return ExitCode::done;
     }
-    return fail(
-        ExitCode::usage,
-        fmt::format("{} (see {})", problem(program, {arguments + 1, arguments + count}, error),
-                    help_command(program)));
+    return fail(ExitCode::usage,
+                fmt::format("{} (see {} --help)",
+                            problem(program, {arguments + 1, arguments + count}, error),
+                            command_name(program)));
   } catch (const ArgumentError& error) {
     return fail(ExitCode::usage, error.what());
   } catch (const Cancelled&) {
     return fail(ExitCode::interrupted, "interrupted; nothing was written");
+  } catch (const FileError& error) {
+    return fail(ExitCode::failed, error.what());
+  } catch (const Error& error) {  // of a build log, or several takes
+    warn("{}", Lines{error.what()});
+    return ExitCode::failed;
+  } catch (const std::bad_alloc&) {
+    return fail(ExitCode::failed,
+                fmt::format("{}: there is not enough memory", command_name(program)));
+  } catch (const std::filesystem::filesystem_error& error) {
+    return fail(ExitCode::failed,
+                fmt::format("{}: {}", error.path1().string(), error.code().message()));
   } catch (const std::exception& error) {
     return fail(ExitCode::failed, error.what());
   }
@@ -107,5 +160,16 @@ ExitCode run_program(int count, char** arguments) {
 }  // namespace moclean::cli
 
 int main(int count, char** arguments) {
-  return static_cast<int>(moclean::cli::run_program(count, arguments));
+  using namespace moclean::cli;
+  open_standard_streams();
+  std::set_terminate(end_at_once);
+  try {
+    const SignalWatch signals;  // before the threads of the OpenCL driver
+    const ExitCode code = with_output_sent(run_program(count, arguments));
+    moclean::remove_unfinished();  // the folder of the driver's kernels, if they had to have one
+    return static_cast<int>(code);
+  } catch (const std::exception&) {  // a thread that cannot be made, no memory for a message
+    std::fputs("moclean: there is not enough memory\n", stderr);
+    return static_cast<int>(ExitCode::failed);
+  }
 }

@@ -300,5 +300,19 @@ TEST(Batch, FortyTakesOfSixFormatsOfWhichThreeAreDamaged) {
   EXPECT_THAT(outcome.err, EndsWith("3 of 40 takes failed, see above\n"));
 }
 
+TEST(Batch, SaysThatTheFrameRateOfAmcInBvhIsAssumed) {
+  const TemporaryFolder folder;
+  folder.write_text("tiny.asf", std::string(tiny_asf));
+  const std::string amc = folder.write_text("tiny.amc", std::string(tiny_amc)),
+                    bvh = folder / "clean.bvh";
+
+  const Outcome assumed = denoise_quickly({amc, "-o", bvh});
+  const Outcome stated = denoise_quickly({amc, "-o", bvh, "--rate", "60"});
+
+  EXPECT_EQ(assumed.exit_code, 0) << assumed.err;
+  EXPECT_THAT(assumed.err, HasSubstr("clean.bvh: no frame rate is known: BVH states 120 Hz"));
+  EXPECT_THAT(stated.err, Not(HasSubstr("120 Hz")));
+}
+
 }  // namespace
 }  // namespace moclean::test

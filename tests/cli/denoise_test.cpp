@@ -319,7 +319,6 @@ INSTANTIATE_TEST_SUITE_P(
         WrongOptions{
             "MixedForm", {"--form", "gpu", "--precision", "mixed"}, "works with --form cpu only"},
         WrongOptions{"NotANumber", {"--rho", "fast"}, "--rho"},
-        WrongOptions{"Rho", {"--rho", "1"}, "rho is 1, expected a number above 1"},
         WrongOptions{"Iterations", {"--max-iterations", "0"}, "max-iterations"},
         WrongOptions{"NoSegments", {"--segments", "0"}, "--segments: must be positive, found '0'"},
         WrongOptions{"NoLength", {"--segment-length", "-3"}, "must be positive, found '-3'"},
@@ -351,6 +350,25 @@ INSTANTIATE_TEST_SUITE_P(
         WrongOptions{"Lambda", {"--lambda", "-1e999"}, "--lambda: must be positive"},
         WrongOptions{"LargeLambda", {"--lambda", "1e999"}, "--lambda: is too large"},
         WrongOptions{"Rate", {"--rate", "0"}, "--rate: must be positive, found '0'"},
+        WrongOptions{"LargeRate", {"--rate", "1e300"}, "--rate: must be 1e-06 to 1000000"},
+        WrongOptions{"InfiniteRate", {"--rate", "inf"}, "--rate: must be 1e-06 to 1000000"},
+        WrongOptions{
+            "MissingText", {"--missing", "abc"}, "--missing: must be a number, found 'abc'"},
+        WrongOptions{
+            "InfiniteMissing", {"--missing", "1e999"}, "--missing: is too large, found '1e999'"},
+        WrongOptions{
+            "ScaleText", {"--lambda-scale", "x"}, "--lambda-scale: must be a number, found 'x'"},
+        WrongOptions{"Tolerance", {"--tolerance", "0"}, "--tolerance: must be positive, found '0'"},
+        WrongOptions{"Rho", {"--rho", "1"}, "--rho: must be above 1, found '1'"},
+        WrongOptions{"RhoText", {"--rho", "1,5"}, "--rho: must be a number, found '1,5'"},
+        WrongOptions{
+            "EndlessFrames",
+            {"--frames", "0:99999999999999999999"},
+            "--frames is '0:99999999999999999999', expected A:B with whole numbers from 0, "
+            "for instance 0:2800; 99999999999999999999 is too large"},
+        WrongOptions{"TruthFrames",
+                     {"--truth", "x.csv", "--truth-frames", "7"},
+                     "--truth-frames is '7', expected A:B"},
         WrongOptions{"MemoryText", {"--memory-limit", "lots"}, "--memory-limit is 'lots'"},
         WrongOptions{"MemoryZero", {"--memory-limit", "0"}, "--memory-limit is '0'"},
         WrongOptions{"MemoryUnit", {"--memory-limit", "2X"}, "such as 512M or 2G"},

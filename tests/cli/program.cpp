@@ -48,6 +48,7 @@ std::vector<std::string> environment(const Start& start) {
       "XDG_CACHE_HOME=" +
       (start.cache.empty() ? (fs::temp_directory_path() / "moclean-test").string() : start.cache));
   if (!start.device.empty()) variables.push_back("MOCLEAN_DEVICE=" + start.device);
+  variables.insert(variables.end(), start.environment.begin(), start.environment.end());
   return variables;
 }
 
@@ -63,7 +64,7 @@ void set_signals(posix_spawnattr_t& attributes, const Start& start) {
   sigset_t set;
   sigemptyset(&set);
   posix_spawnattr_setsigmask(&attributes, &set);
-  sigaddset(&set, SIGTERM);
+  for (const int signal : {SIGTERM, SIGHUP, SIGQUIT, SIGXFSZ, SIGPIPE}) sigaddset(&set, signal);
   if (!start.ignore_interrupt) sigaddset(&set, SIGINT);
   posix_spawnattr_setsigdefault(&attributes, &set);
   posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
@@ -85,7 +86,12 @@ Program::Program(const std::vector<std::string>& arguments, const Start& start)
   posix_spawn_file_actions_init(&files);
   if (!start.input.empty())
     posix_spawn_file_actions_addopen(&files, STDIN_FILENO, start.input.c_str(), O_RDONLY, 0);
-  posix_spawn_file_actions_adddup2(&files, out_, STDOUT_FILENO);
+  if (start.output == "-")
+    posix_spawn_file_actions_addclose(&files, STDOUT_FILENO);
+  else if (!start.output.empty())
+    posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, start.output.c_str(), O_WRONLY, 0);
+  else
+    posix_spawn_file_actions_adddup2(&files, out_, STDOUT_FILENO);
   posix_spawn_file_actions_adddup2(&files, start.terminal ? terminal_ : err_, STDERR_FILENO);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);

@@ -21,11 +21,13 @@ struct Outcome {
 
 /// How `moclean` is started.
 struct Start {
-  std::string device = {};        ///< MOCLEAN_DEVICE; unset where empty
-  std::string cache = {};         ///< XDG_CACHE_HOME; a folder without tunings where empty
-  std::string input = {};         ///< file that is standard input; that of the tests where empty
-  bool terminal = false;          ///< standard error is a terminal
-  bool ignore_interrupt = false;  ///< SIGINT is ignored, as under nohup
+  std::string device = {};  ///< MOCLEAN_DEVICE; unset where empty
+  std::string cache = {};   ///< XDG_CACHE_HOME; a folder without tunings where empty
+  std::string input = {};   ///< file that is standard input; that of the tests where empty
+  std::string output = {};  ///< file that is standard output; `-`: closed
+  std::vector<std::string> environment = {};  ///< further variables, NAME=VALUE
+  bool terminal = false;                      ///< standard error is a terminal
+  bool ignore_interrupt = false;              ///< SIGINT is ignored, as under nohup
 };
 
 /// A running `moclean`.

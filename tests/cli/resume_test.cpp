@@ -162,15 +162,15 @@ TEST_F(Resume, SurvivesAManifestThatIsDamaged) {
 
 TEST_F(Resume, RemovesWhatAKilledRunHasLeftAndNothingElse) {
   run_first();
-  folder_.write_text("out/.0.csv.0123456789abcdef.tmp", "half");
-  const std::vector<std::string> others = {".0.csv.tmp", ".9.csv.0123456789abcdef.tmp",
-                                           ".0.csv.0123456789abcdeg.tmp", ".hidden"};
+  folder_.write_text("out/.0.csv.0123456789abcdef01234567.tmp", "half");
+  const std::vector<std::string> others = {".0.csv.tmp", ".9.csv.0123456789abcdef01234567.tmp",
+                                           ".0.csv.0123456789abcdef0123456g.tmp", ".hidden"};
   for (const std::string& name : others) folder_.write_text("out/" + name, "of somebody else");
 
   ASSERT_EQ(denoise({"--resume"}).exit_code, 0);
 
   std::vector<std::string> left = files_below(folder_, "out");
-  EXPECT_THAT(left, ::testing::Not(::testing::Contains(".0.csv.0123456789abcdef.tmp")));
+  EXPECT_THAT(left, ::testing::Not(::testing::Contains(".0.csv.0123456789abcdef01234567.tmp")));
   for (const std::string& name : others) EXPECT_THAT(left, ::testing::Contains(name));
 }
 

@@ -31,5 +31,19 @@ TEST(Printable, EscapesWhatIsNoUtf8) {
   EXPECT_EQ(printable("\xe6\x89"), "\\xE6\\x89") << "cut off";
 }
 
+TEST(Printable, EscapesWhatTurnsOrHidesText) {
+  EXPECT_EQ(printable("walk\u202Evsc.exe"), "walk\\xE2\\x80\\xAEvsc.exe") << "right to left";
+  EXPECT_EQ(printable("a\u2066b\u2069"), "a\\xE2\\x81\\xA6b\\xE2\\x81\\xA9") << "isolates";
+  EXPECT_EQ(printable("a\u200Fb\u061C"), "a\\xE2\\x80\\x8Fb\\xD8\\x9C") << "marks";
+  EXPECT_EQ(printable("a\u2028b"), "a\\xE2\\x80\\xA8b") << "a line separator";
+  EXPECT_EQ(printable("\uFEFFx"), "\\xEF\\xBB\\xBFx") << "a byte order mark";
+  EXPECT_EQ(printable("\U000E0041"), "\\xF3\\xA0\\x81\\x81") << "a tag";
+  EXPECT_EQ(printable("می\u200Cخواهم"), "می\u200Cخواهم") << "a joiner is spelling";
+}
+
+TEST(PrintableLine, HasNoLineFeed) {
+  EXPECT_EQ(printable_line("a\nb\u2029\x1b"), "a\\x0Ab\\xE2\\x80\\xA9\\x1B");
+}
+
 }  // namespace
 }  // namespace moclean

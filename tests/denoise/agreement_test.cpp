@@ -50,6 +50,14 @@ TEST(Agreement, MeasuresAgainstTheDataWhereThePartOfTheReferenceIsZero) {
   EXPECT_NEAR(agreement(tested, reference).sparse, 0.2, test::tolerance::by_hand(1));
 }
 
+// A body that rests, with one gross error: what is left of its motion is rounding.
+TEST(Agreement, MeasuresAgainstTheDataWhereThePartOfTheReferenceIsNextToNothing) {
+  const Denoised reference = result_of(Matrix{{1e-80, 0}, {0, 0}}, Matrix{{0, 100}, {0, 0}});
+  const Denoised tested = result_of(Matrix{{0, 1e-80}, {0, 0}}, Matrix{{0, 100}, {0, 0}});
+
+  EXPECT_TRUE(within(agreement(tested, reference)));
+}
+
 TEST(Agreement, CountsZeroAgainstZeroAsPerfect) {
   const Denoised zero = result_of(Matrix::Zero(2, 2), Matrix::Zero(2, 2));
 

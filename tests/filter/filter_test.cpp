@@ -100,7 +100,9 @@ TEST(Filtered, RefusesParametersOutOfRangeOnAnyThread) {
 TEST(Filters, AreWrittenWithEveryParameter) {
   EXPECT_EQ(to_string(Filter(Hampel{.window = 7, .sigmas = 3})), "hampel:window=7,sigmas=3");
   EXPECT_EQ(to_string(Filter(KalmanSmoother{.model = KalmanSmoother::Model::acceleration})),
-            "kalman:model=acceleration,process=1000,measurement=1");
+            "kalman:model=acceleration");
+  EXPECT_EQ(to_string(Filter(KalmanSmoother{.process = 1e4})),
+            "kalman:model=velocity,process=10000");
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "moclean/filter/kalman.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -74,6 +75,31 @@ TEST(KalmanSmoother, DoesNotDependOnTheUnit) {
   for (std::size_t i = 0; i < 40; ++i) EXPECT_EQ(z[i], 1024 * expected[i]);
 }
 
+TEST(KalmanSmoother, NeedsNoUnitWithoutParameters) {
+  for (const double unit : {1024.0, 0x1p-400, 0x1p-1000, 0x1p400}) {
+    auto other = rough_wave();
+    for (double& y : other) y *= unit;
+
+    const auto z = smoothed(KalmanSmoother{}, other, 100);
+
+    const auto expected = smoothed(KalmanSmoother{}, rough_wave(), 100);
+    for (std::size_t i = 0; i < 40; ++i) EXPECT_EQ(z[i], unit * expected[i]) << unit;
+  }
+}
+
+// Ratio and measurement as in millimetres: a thousandth of the range.
+TEST(KalmanSmoother, IsThatOfAThousandthOfTheRangeWithoutParameters) {
+  const auto y = rough_wave();
+  const auto [least, most] = std::ranges::minmax(y);
+  const double measurement = (most - least) / 1000;
+
+  const auto z = smoothed(KalmanSmoother{}, y, 100);
+
+  const auto expected =
+      smoothed(KalmanSmoother{.process = 1000 * measurement, .measurement = measurement}, y, 100);
+  for (std::size_t i = 0; i < 40; ++i) EXPECT_NEAR(z[i], expected[i], 1e-9) << i;
+}
+
 TEST(KalmanSmoother, KeepsAConstantAndASingleSample) {
   for (const double x : smoothed(KalmanSmoother{}, {nan, 4, 4, nan, 4, 4}, 120))
     if (!std::isnan(x)) {
@@ -85,6 +111,8 @@ TEST(KalmanSmoother, KeepsAConstantAndASingleSample) {
 TEST(KalmanSmoother, RefusesParametersOutOfRange) {
   EXPECT_THROW(check(KalmanSmoother{.process = 0}), ArgumentError);
   EXPECT_THROW(check(KalmanSmoother{.measurement = nan}), ArgumentError);
+  EXPECT_THROW(check(KalmanSmoother{.process = 1e160}), ArgumentError);
+  EXPECT_THROW(check(KalmanSmoother{.measurement = 1e-160}), ArgumentError);
 }
 
 }  // namespace

@@ -118,6 +118,20 @@ TEST(RobustWhittaker, IsPulledByGrossErrorsNoMoreThanBySmallOnes) {
   EXPECT_GT(largest_difference(smoothed(Whittaker{.lambda = 1}, spoilt_line(1e6)), line), 1e5);
 }
 
+// Weights of 1 / 1e300 would leave nothing of the samples, and zeros or NaN of the curve.
+TEST(RobustWhittaker, StaysNearSamplesOfAnySizeWithAnyDelta) {
+  const auto line = spoilt_line(0);
+  for (const double size : {1e-120, 1.0, 1e120})
+    for (const double delta : {1e-300, 1e300}) {
+      auto y = line;
+      for (double& sample : y) sample *= size;
+
+      const auto z = smoothed(RobustWhittaker{.lambda = 1e4, .delta = delta}, y);
+
+      for (std::size_t t = 0; t < z.size(); ++t) EXPECT_NEAR(z[t] / size, line[t], 0.01) << size;
+    }
+}
+
 TEST(RobustWhittaker, LeavesGaps) {
   const auto z = smoothed(RobustWhittaker{.lambda = 10}, with_gap());
 
@@ -131,6 +145,8 @@ TEST(Whittakers, RefuseParametersOutOfRange) {
   EXPECT_THROW(check(RobustWhittaker{.difference = 0}), ArgumentError);
   EXPECT_THROW(check(RobustWhittaker{.delta = 0}), ArgumentError);
   EXPECT_THROW(check(RobustWhittaker{.iterations = 0}), ArgumentError);
+  EXPECT_THROW(check(Whittaker{.lambda = 1e16}), ArgumentError);
+  EXPECT_THROW(check(RobustWhittaker{.lambda = 1e16}), ArgumentError);
 }
 
 }  // namespace

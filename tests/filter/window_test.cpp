@@ -149,6 +149,10 @@ TEST(Windows, MayBeLongerThanTheChannel) {
 }
 
 TEST(Windows, RefuseParametersOutOfRange) {
+  EXPECT_THROW(check(MovingAverage{.window = 2147483647}), ArgumentError);
+  EXPECT_THROW(check(MedianFilter{.window = 2147483647}), ArgumentError);
+  EXPECT_THROW(check(Hampel{.window = 2147483647}), ArgumentError);
+  EXPECT_THROW(check(GaussianFilter{.sd = 1e9}), ArgumentError);
   EXPECT_THROW(check(MovingAverage{.window = 4}), ArgumentError);
   EXPECT_THROW(check(MedianFilter{.window = 0}), ArgumentError);
   EXPECT_THROW(check(Hampel{.window = -1}), ArgumentError);

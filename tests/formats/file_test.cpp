@@ -134,5 +134,63 @@ TEST(AtomicFile, WritesToADeviceOrPipeAndLeavesItThere) {
   EXPECT_TRUE(std::filesystem::is_fifo(pipe));
 }
 
+TEST(ReadFile, RefusesWhatIsNoFileOrPipe) {
+  EXPECT_THAT([] { read_file("/dev/zero"); },
+              ThrowsMessage<FileError>(HasSubstr("expected a file, found a device")));
+}
+
+TEST(ReadFile, RefusesWhatNoMemoryHolds) {
+  const test::TemporaryFolder folder;
+  const fs::path file = folder.file("x.csv", "");
+  fs::resize_file(file, std::uintmax_t{1} << 42);  // without a byte on the disk
+
+  EXPECT_THAT([&] { read_file(file); },
+              ThrowsMessage<FileError>(HasSubstr("do not fit into the memory")));
+}
+
+mode_t mode_of(const fs::path& file) {
+  struct stat facts {};
+  EXPECT_EQ(stat(file.c_str(), &facts), 0);
+  return facts.st_mode & 07777;
+}
+
+TEST(AtomicFile, KeepsThePermissionsOfTheFileItReplaces) {
+  const test::TemporaryFolder folder;
+  const fs::path target = folder.file("x.csv", "old");
+  ASSERT_EQ(chmod(target.c_str(), 0600), 0);
+  AtomicFile file(target);
+
+  const mode_t early = mode_of(file.temporary());
+  file.commit();
+
+  EXPECT_EQ(early, 0600u) << "nobody reads it meanwhile";
+  EXPECT_EQ(mode_of(target), 0600u);
+}
+
+TEST(AtomicFile, WritesWhereALinkLeads) {
+  const test::TemporaryFolder folder;
+  fs::create_directory(folder.path() / "there");
+  const fs::path link = folder.path() / "x.csv", between = folder.path() / "y.csv";
+  fs::create_symlink("y.csv", link);
+  fs::create_symlink("there/z.csv", between);  // which is not there yet
+
+  for (const char* text : {"first", "second"}) {
+    AtomicFile file(link);
+    file.write(text);
+    file.commit();
+
+    EXPECT_EQ(read_file(folder.path() / "there" / "z.csv"), text);
+    EXPECT_TRUE(fs::is_symlink(link) && fs::is_symlink(between));
+  }
+}
+
+TEST(AtomicFile, RefusesLinksThatGoRound) {
+  const test::TemporaryFolder folder;
+  fs::create_symlink("b.csv", folder.path() / "a.csv");
+  fs::create_symlink("a.csv", folder.path() / "b.csv");
+
+  EXPECT_THROW(AtomicFile(folder.path() / "a.csv"), FileError);
+}
+
 }  // namespace
 }  // namespace moclean

@@ -200,5 +200,20 @@ TEST(NoiseChain, AddsEachToWhatTheOneBeforeLeft) {
   EXPECT_TRUE((both.clip.samples.array() == walk.samples.array() || both.touched).all());
 }
 
+TEST(Noise, RefusesToMakeNumbersThatNoMethodTakes) {
+  const Recording walk = test::synthetic_walk(50);
+  for (const char* noise : {"gaussian:sd=1e300", "gaussian-frames:frames=9,mean=1e200,sd=1",
+                            "burst:count=1,length=3,sd=1e300", "inertial-drift:sd=1e300"})
+    EXPECT_THROW(corrupt(walk, parse_noise(noise), 1), ArgumentError) << noise;
+}
+
+TEST(Noise, OfRunsIsBoundedByTheTake) {
+  const Recording walk = test::synthetic_walk(50);
+  for (const char* noise :
+       {"burst:count=9223372036854775807,length=5,sd=1", "gap:count=1000000000000,length=1",
+        "swap:count=1000000000,length=2", "drift:count=1000000000,length=2,sd=1"})
+    EXPECT_THROW(corrupt(walk, parse_noise(noise), 1), ArgumentError) << noise;
+}
+
 }  // namespace
 }  // namespace moclean

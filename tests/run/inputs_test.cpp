@@ -3,6 +3,8 @@
 #include "moclean/run/inputs.hpp"
 
 #include <gmock/gmock.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "moclean/core/error.hpp"
 
@@ -112,6 +114,38 @@ TEST_F(Inputs, AFolderWithoutRecordingsIsNamed) {
 }
 
 TEST(RawName, StandsBeforeTheExtension) { EXPECT_EQ(raw_name("walk.1.BVH"), "walk.1.raw.BVH"); }
+
+TEST_F(Inputs, AFolderThatCannotBeReadIsPassedByAndNamed) {
+  if (geteuid() == 0) GTEST_SKIP() << "root reads every folder";
+  for (const char* name : {"in/a.csv", "in/closed/b.csv", "in/z.csv"}) touch(name);
+  fs::permissions(folder_ / "in/closed", fs::perms::none);
+  PassedBy passed;
+
+  const auto files = expand_folders({folder_ / "in"}, {}, &passed);
+
+  EXPECT_THAT(files, ElementsAre(fs::path(folder_ / "in/a.csv"), fs::path(folder_ / "in/z.csv")));
+  EXPECT_THAT(passed.unreadable, ElementsAre(fs::path(folder_ / "in/closed")));
+  EXPECT_THAT(passed.problems, ElementsAre(HasSubstr("closed: cannot be read: Permission denied")));
+  EXPECT_THROW(expand_folders({folder_ / "in"}), FileError);
+  EXPECT_THROW(expand_folders({folder_ / "in/closed"}, {}, &passed), FileError);
+  fs::permissions(folder_ / "in/closed", fs::perms::owner_all);
+}
+
+TEST_F(Inputs, WhatHasTheNameOfATakeAndIsNoneIsNamed) {
+  touch("in/a.csv");
+  fs::create_symlink("nothing", folder_ / "in/b.csv");
+  fs::create_symlink("c.csv", folder_ / "in/c.csv");
+  ASSERT_EQ(mkfifo((folder_ / "in/d.csv").c_str(), 0600), 0);
+  ASSERT_EQ(mkfifo((folder_ / "in/pipe").c_str(), 0600), 0);
+  PassedBy passed;
+
+  const auto files = expand_folders({folder_ / "in"}, {}, &passed);
+
+  EXPECT_THAT(files, ElementsAre(fs::path(folder_ / "in/a.csv")));
+  EXPECT_THAT(passed.skipped, ElementsAre(HasSubstr("b.csv: skipped, a link to nothing"),
+                                          HasSubstr("c.csv: skipped, Too many levels of symbolic"),
+                                          HasSubstr("d.csv: skipped, a pipe")));
+}
 
 }  // namespace
 }  // namespace moclean

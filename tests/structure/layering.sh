@@ -47,7 +47,9 @@ only_in=(
 may_catch=(
   'moclean/device/opencl.hpp: turns cl::Error into DeviceError'
   'moclean/device/kernel.cpp: turns a failed build into a DeviceError that holds the log'
+  'moclean/formats/file.cpp: says of which file that it does not fit into the memory'
   'moclean/device/device.cpp: an ICD without platforms or devices throws; that is an empty list'
+  'moclean/experiment/toml_file.cpp: turns what toml++ asserts of a file into an error with its line'
   'moclean/experiment/grid_config.cpp: gives the error of a specification its file and line'
   'moclean/core/parallel.hpp: carries an exception from a thread to the caller'
   'moclean/run/run_log.hpp: keeps the failure of a take, which need not end the run'

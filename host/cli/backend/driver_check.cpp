@@ -11,6 +11,8 @@
 #include "moclean/core/error.hpp"
 #include "moclean/device/device.hpp"
 
+#include "cli/backend/kernel_cache.hpp"
+
 namespace moclean::cli {
 namespace {
 
@@ -53,6 +55,7 @@ void require_driver(const fs::path& cpus, const std::function<void()>& ask) {
 }
 
 void require_driver() {
+  require_kernel_cache();
   require_driver("/sys/devices/system/cpu", [] { list_devices(); });
 }
 

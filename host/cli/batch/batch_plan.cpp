@@ -10,7 +10,10 @@
 #include "moclean/core/error.hpp"
 #include "moclean/core/hash.hpp"
 #include "moclean/core/parallel.hpp"
+#include "moclean/formats/amc.hpp"
+#include "moclean/formats/bvh.hpp"
 #include "moclean/formats/file.hpp"
+#include "moclean/formats/formats.hpp"
 #include "moclean/run/truth.hpp"
 
 namespace moclean::cli {
@@ -150,6 +153,19 @@ OutputRequest request_of(const BatchPlan& plan) {
   return request;
 }
 
+// AMC states no frame rate, and BVH has to; as losses() says it of one take.
+void note_assumed_rate(BatchPlan& plan) {
+  std::vector<fs::path> assumed;
+  for (std::size_t i = 0; i < plan.files.size(); ++i)
+    if (format_of(plan.files[i]) == &amc_format &&
+        format_of(plan.outputs.clean[i]) == &bvh_format && plan.options_of(i).reading.rate == 0)
+      assumed.push_back(plan.outputs.clean[i]);
+  if (assumed.empty()) return;
+  plan.outputs.notes.push_back(fmt::format(
+      "{}: no frame rate is known: BVH states 120 Hz; --rate states another",
+      assumed.size() == 1 ? assumed.front().string() : fmt::format("{} takes", assumed.size())));
+}
+
 void add_records(BatchPlan& plan) {
   SharedHashes hashes;
   for (std::size_t i = 0; i < plan.files.size(); ++i) {
@@ -196,14 +212,21 @@ BatchPlan plan_batch(const DenoiseLayers& layers, const DenoiseOptions& options)
   BatchPlan plan;
   plan.settings = {options};
   EarlierResults earlier(options);
-  plan.files = expand_folders(options.inputs, [&](const fs::path& path) { return earlier(path); });
+  plan.files = expand_folders(
+      options.inputs, [&](const fs::path& path) { return earlier(path); },
+      options.all_or_nothing ? nullptr : &plan.passed_by);
+  if (plan.files.empty() && !plan.passed_by.problems.empty())
+    throw Error(plan.passed_by.problems.front());
   std::vector<fs::path> below;
   const InputFolders folders(options.inputs);
   for (const fs::path& file : plan.files) below.push_back(folders.below(file));
   find_settings(layers, below, plan);
   plan.warnings = layers.unused(below);
+  plan.warnings.insert(plan.warnings.end(), plan.passed_by.skipped.begin(),
+                       plan.passed_by.skipped.end());
   if (!options.truth.empty()) plan.truths = truths_of(options.truth, plan.files, options.inputs);
   plan.outputs = plan_outputs(request_of(plan));
+  note_assumed_rate(plan);
   add_records(plan);
   plan.done.resize(plan.files.size());
   if (options.all_or_nothing && plan.groups().size() > 1)

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "moclean/run/inputs.hpp"
 #include "moclean/run/outputs.hpp"
 
 #include "cli/batch/manifest.hpp"
@@ -20,6 +21,7 @@ struct BatchPlan {
   std::vector<ManifestTake> records;          ///< likewise
   std::vector<char> done = {};                ///< likewise: not 0 if it need not be done again
   OutputPlan outputs;
+  PassedBy passed_by;  ///< in folders; what is unreadable is a failure
   std::vector<std::string> warnings;
 
   const DenoiseOptions& common() const { return settings.front(); }

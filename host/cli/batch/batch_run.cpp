@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "moclean/core/printable.hpp"
 #include "moclean/run/engine.hpp"
 
 namespace moclean::cli {
@@ -100,12 +101,13 @@ std::string dry_run_text(const BatchPlan& plan) {
   for (std::size_t i = 0; i < plan.files.size(); ++i) {
     const DenoiseOptions& options = plan.options_of(i);
     done += plan.done[i] ? 1 : 0;
-    text += fmt::format("{} -> {}: {}\n", plan.outputs.sources[i].string(),
-                        plan.outputs.clean[i].string(),
+    text += fmt::format("{} -> {}: {}\n", printable_line(plan.outputs.sources[i].string()),
+                        printable_line(plan.outputs.clean[i].string()),
                         plan.done[i] ? "left out, done before" : to_string(options.chain));
     for (const FileCopy& copy : plan.outputs.copies[i])
       if (!plan.done[i])
-        text += fmt::format("{} -> {}: copied\n", copy.from.string(), copy.to.string());
+        text += fmt::format("{} -> {}: copied\n", printable_line(copy.from.string()),
+                            printable_line(copy.to.string()));
   }
   return text + fmt::format("{} takes to do, {} done before; nothing was written (--dry-run)\n",
                             plan.files.size() - done, done);

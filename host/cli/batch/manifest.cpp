@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <charconv>
 #include <fstream>
-#include <set>
 #include <system_error>
 #include <utility>
 
@@ -17,6 +16,7 @@
 #include "moclean/core/printable.hpp"
 #include "moclean/core/version.hpp"
 #include "moclean/formats/file.hpp"
+#include "moclean/formats/temporary_name.hpp"
 
 namespace moclean::cli {
 namespace {
@@ -206,22 +206,22 @@ void FolderLock::if_alone(const std::function<void()>& work) const {
 }
 
 void remove_left_of(const std::vector<fs::path>& files) {
-  std::map<fs::path, std::set<std::string>> names;  // per folder
+  std::map<fs::path, std::vector<std::string>> names;  // per folder
   for (const fs::path& file : files)
-    names[file.has_parent_path() ? file.parent_path() : fs::path(".")].insert(
+    names[file.has_parent_path() ? file.parent_path() : fs::path(".")].push_back(
         file.filename().string());
   for (const auto& [folder, targets] : names) {
     std::vector<fs::path> left;
     std::error_code error;
     for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
-         entry.increment(error)) {
-      // `.NAME.xxxx.tmp`: NAME is what stands before the last two dots
-      const std::string stem = entry->path().stem().stem().string();
-      if (stem.starts_with('.') && targets.contains(stem.substr(1)) &&
-          is_left_of(entry->path(), stem.substr(1)))
+         entry.increment(error))
+      if (entry->path().extension() == ".tmp" &&
+          std::ranges::any_of(targets, [&](const std::string& target) {
+            return is_temporary_of(entry->path(), target);
+          }))
         left.push_back(entry->path());
-    }
     for (const fs::path& file : left) fs::remove(file, error);
+    remove_left_in(folder);
   }
 }
 

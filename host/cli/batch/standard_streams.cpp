@@ -2,14 +2,16 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <cstdlib>
 #include <system_error>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "moclean/core/error.hpp"
 #include "moclean/formats/file.hpp"
+#include "moclean/formats/temporary_name.hpp"
+#include "moclean/formats/unfinished.hpp"
+
+#include "cli/printing/standard_output.hpp"
 
 namespace moclean::cli {
 namespace {
@@ -22,6 +24,7 @@ void replace_all(std::string& text, const std::string& from, const std::string& 
 }
 
 std::string standard_input() {
+  const OutsideWait wait;
   std::string bytes;
   char chunk[1 << 16];
   for (std::size_t count; (count = std::fread(chunk, 1, sizeof chunk, stdin)) > 0;)
@@ -55,7 +58,7 @@ StandardStreams::StandardStreams(DenoiseOptions& options) : StandardStreams() {
     throw ArgumentError("- as OUTPUT takes the result of one input");
   if (!reads && !writes) return;
   const std::string bytes = reads ? standard_input() : "";  // before anything is made: Ctrl-C
-  make_folder();
+  folder_ = make_temporary_folder();
   if (writes) {
     if (options.format.empty()) options.format = input_format;
     output_ = folder_ / ("output." + options.format);
@@ -72,14 +75,11 @@ StandardStreams::StandardStreams(DenoiseOptions& options) : StandardStreams() {
 }
 
 StandardStreams::~StandardStreams() {
-  std::error_code ignored;
-  if (!folder_.empty()) fs::remove_all(folder_, ignored);
-}
-
-void StandardStreams::make_folder() {
-  std::string name = (fs::temp_directory_path() / "moclean-XXXXXX").string();
-  if (!mkdtemp(name.data())) throw FileError(name, "cannot be created");
-  folder_ = name;
+  if (folder_.empty()) return;
+  settle_unfinished(folder_, [&] {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+  });
 }
 
 std::string StandardStreams::named(std::string text) const {
@@ -94,9 +94,7 @@ void StandardStreams::send() const {
   const std::string bytes = read_file(output_);
   std::error_code ignored;
   fs::remove_all(folder_, ignored);
-  if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() ||
-      std::fflush(stdout) != 0)
-    throw FileError("standard output", "cannot be written");
+  write_output(bytes);
 }
 
 }  // namespace moclean::cli

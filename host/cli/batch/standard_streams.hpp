@@ -24,12 +24,12 @@ class StandardStreams {
   /// Whether the result goes to standard output, which has no room for messages then.
   bool writes() const { return !output_.empty(); }
 
-  /// Writes what has become of the output; nothing where that is a file. Throws FileError.
+  /// Writes what has become of the output; nothing where that is a file. Throws FileError if there
+  /// is none; that standard output takes all of it is checked when the program ends.
   void send() const;
 
  private:
   StandardStreams() = default;
-  void make_folder();
 
   std::filesystem::path folder_;
   std::filesystem::path input_, output_;  // empty where they are no streams

@@ -14,7 +14,7 @@ enum class ExitCode {
   failed = 1,         ///< a take or the device failed, or --verify found a difference
   usage = 2,          ///< the command line is wrong; nothing was written
   not_converged = 3,  ///< everything is written, but a segment reached --max-iterations
-  interrupted = 130   ///< SIGINT (Ctrl-C) or SIGTERM
+  interrupted = 130   ///< SIGINT (Ctrl-C), SIGTERM, SIGHUP, SIGQUIT or SIGXCPU
 };
 
 /// What the chosen command does once the command line is parsed.

@@ -9,9 +9,11 @@
 #include "moclean/formats/formats.hpp"
 #include "moclean/formats/losses.hpp"
 #include "moclean/formats/read_write.hpp"
+#include "moclean/formats/temporary_name.hpp"
 #include "moclean/run/inputs.hpp"
 #include "moclean/run/outputs.hpp"
 #include "moclean/run/run_report.hpp"
+#include "moclean/run/same_file.hpp"
 
 #include "cli/commands/commands.hpp"
 #include "cli/options/input_options.hpp"
@@ -31,6 +33,10 @@ struct ConvertOptions {
 ExitCode run(const ConvertOptions& options) {
   require_writable_recording(options.output);
   if (!options.force) require_other_file(options.input, options.output);
+  const NamedFile skeleton[] = {{"--skeleton", options.reading.skeleton}},
+                  output[] = {{"OUTPUT", options.output}};
+  require_apart(skeleton, output);
+  remove_left_beside(options.output);
   const Recording clip = read_recording(options.input, options.reading);
   const std::vector<std::string> lost =
       losses(clip, *format_of(options.input), *format_of(options.output));

@@ -1,6 +1,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -8,12 +9,15 @@
 #include "moclean/core/error.hpp"
 #include "moclean/formats/formats.hpp"
 #include "moclean/formats/read_write.hpp"
+#include "moclean/formats/temporary_name.hpp"
 #include "moclean/metric/metric.hpp"
 #include "moclean/noise/noise.hpp"
 #include "moclean/run/inputs.hpp"
 #include "moclean/run/outputs.hpp"
+#include "moclean/run/same_file.hpp"
 
 #include "cli/commands/commands.hpp"
+#include "cli/options/checks.hpp"
 #include "cli/options/input_options.hpp"
 #include "cli/printing/say.hpp"
 
@@ -39,13 +43,17 @@ ExitCode run(const CorruptOptions& options) {
   if (!options.mask.empty()) require_writable_recording(options.mask);
   for (const std::filesystem::path& output : {options.output, options.mask})
     if (!options.force) require_other_file(options.input, output);
-  if (options.mask == options.output)
-    throw ArgumentError(fmt::format("-o and --mask would both write {}", options.output.string()));
+  const NamedFile skeleton[] = {{"--skeleton", options.reading.skeleton}},
+                  outputs[] = {{"-o", options.output}, {"--mask", options.mask}};
+  require_apart(skeleton, outputs);
+  for (const NamedFile& output : outputs) remove_left_beside(output.file);
   const Recording clean = read_recording(options.input, options.reading);
   const Corrupted noisy = corrupt(clean, noise, options.seed);
   AtomicFile clip = write_temporary(options.output, noisy.clip);
-  if (!options.mask.empty()) write_recording(options.mask, mask_of(noisy));
+  std::optional<AtomicFile> mask;
+  if (!options.mask.empty()) mask.emplace(write_temporary(options.mask, mask_of(noisy)));
   clip.commit();
+  if (mask) mask->commit();
   const bool any_left = !(clean.samples - noisy.clip.samples).array().isNaN().all();
   say("{} -> {}: {} of {} entries changed, FD {}\n", options.input.string(),
       options.output.string(), noisy.touched.count(), noisy.touched.size(),
@@ -93,6 +101,7 @@ void add_corrupt(CLI::App& program, Action& action) {
       ->required()
       ->type_name("SPEC");
   command.add_option("--seed", options->seed, "Seed of the random numbers")
+      ->check(seed_number())
       ->capture_default_str()
       ->type_name("N");
   add_input_options(command, options->reading);

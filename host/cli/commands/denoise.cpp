@@ -11,9 +11,11 @@
 
 #include "moclean/core/error.hpp"
 #include "moclean/denoise/chain.hpp"
+#include "moclean/formats/temporary_name.hpp"
 #include "moclean/report/report.hpp"
 #include "moclean/run/process_memory.hpp"
 #include "moclean/run/result_writer.hpp"
+#include "moclean/run/same_file.hpp"
 
 #include "cli/backend/driver_check.hpp"
 #include "cli/backend/first_use.hpp"
@@ -122,6 +124,11 @@ Json left_out_record(const BatchPlan& plan, std::size_t take) {
   return {{"file", plan.files[take].string()}, {"left_out", "done before"}};
 }
 
+Json unreadable_record(const BatchPlan& plan, std::size_t folder) {
+  return {{"folder", plan.passed_by.unreadable[folder].string()},
+          {"error", plan.passed_by.problems[folder]}};
+}
+
 Json whole_record(const BatchPlan& plan, const BackendReport& backend, const RunReport& report) {
   Json record = json_record(plan.common(), backend, report);
   for (std::size_t i = 0; i < plan.files.size(); ++i) {
@@ -129,11 +136,22 @@ Json whole_record(const BatchPlan& plan, const BackendReport& backend, const Run
     if (plan.setting_of[i] != 0)
       record["inputs"][i]["method"] = to_string(plan.options_of(i).chain);
   }
+  for (std::size_t i = 0; i < plan.passed_by.problems.size(); ++i)
+    record["unreadable_folders"].push_back(unreadable_record(plan, i));
   return record;
 }
 
-// Everything about the takes that goes to standard error, the failures last.
-ExitCode tell_problems(const RunReport& report) {
+// The log of a build has lines; a name that has some is one.
+void tell_failure(const TakeReport& take) {
+  if (take.file.string().find('\n') == std::string::npos)
+    warn("{}", Lines{take.failure});
+  else
+    warn("{}", take.failure);
+}
+
+// Everything about the takes that goes to standard error, the failures last, and the folders that
+// were passed by.
+ExitCode tell_problems(const RunReport& report, const std::vector<std::string>& unreadable) {
   std::vector<TakeReport> written, failed;
   for (const TakeReport& take : report.takes)
     (take.failure.empty() ? written : failed).push_back(take);
@@ -141,19 +159,19 @@ ExitCode tell_problems(const RunReport& report) {
   warn_of_unobserved(written);
   tell_of_changes(written);
   const ExitCode code = warn_if_not_converged(written);
-  if (failed.empty()) return code;
-  for (const TakeReport& take : failed) warn("{}", take.failure);
-  warn("{} of {} takes failed, see above", failed.size(), report.takes.size());
-  return ExitCode::failed;
+  for (const TakeReport& take : failed) tell_failure(take);
+  for (const std::string& problem : unreadable) warn("{}", problem);
+  if (!failed.empty()) warn("{} of {} takes failed, see above", failed.size(), report.takes.size());
+  return failed.empty() && unreadable.empty() ? code : ExitCode::failed;
 }
 
 void print_report(const BatchPlan& plan, const StandardStreams& streams, const RunReport& run,
                   const BackendReport& backend) {
   for (std::size_t i = 0; i < run.takes.size(); ++i)
     if (!plan.done[i] && run.takes[i].failure.empty())
-      say("{}", streams.named(take_text(run.takes[i], plan.outputs.clean[i])));
-  say("{}", run_text(run, plan.done));
-  if (backend.profile) say("\n{}", profile_table(*backend.profile));
+      say("{}", Lines{streams.named(take_text(run.takes[i], plan.outputs.clean[i]))});
+  say("{}", Lines{run_text(run, plan.done)});
+  if (backend.profile) say("\n{}", Lines{profile_table(*backend.profile)});
 }
 
 // What stands around the results of a run in a folder: the lock, the manifest, the folder itself.
@@ -186,7 +204,8 @@ class ResultsFolder {
 };
 
 RunReport run_shown(const BatchPlan& plan, const StandardStreams& streams, Manifest* manifest,
-                    OpenedBackend& opened, TakeLines& lines, const std::stop_token& stop) {
+                    OpenedBackend& opened, TakeLines& lines) {
+  const Interrupt interrupt;
   const FirstUse first_use(opened, plan.common());
   RunProgress progress(plan.common(), first_use.is_first());
   std::size_t written = 0;
@@ -200,7 +219,7 @@ RunReport run_shown(const BatchPlan& plan, const StandardStreams& streams, Manif
       lines.add(full_record(plan, streams, failed->take, *failed->report));
   };
   try {
-    RunReport report = run_batch(plan, manifest, *opened.backend, sink, stop);
+    RunReport report = run_batch(plan, manifest, *opened.backend, sink, interrupt.token());
     first_use.keep();
     return report;
   } catch (const Cancelled&) {
@@ -215,21 +234,27 @@ RunReport run_shown(const BatchPlan& plan, const StandardStreams& streams, Manif
 // Records must not replace what is read or written beside them.
 void require_records_apart(const BatchPlan& plan) {
   const DenoiseOptions& options = plan.common();
-  if (!options.json.empty() && options.json != "-" && options.json == options.lines)
-    throw ArgumentError(
-        fmt::format("--json and --lines would both write {}", options.json.string()));
-  for (const fs::path& record : {options.json, options.lines}) {
-    if (record.empty() || record == "-") continue;
-    for (const fs::path& file : plan.files) require_other_file(file, record);
-    for (const fs::path& file : {options.truth, options.reading.skeleton})
-      require_other_file(file, record);
-    for (const auto* files : {&plan.outputs.clean, &plan.outputs.outliers, &plan.outputs.masks,
-                              &plan.outputs.sigmas, &plan.outputs.reports})
-      for (const fs::path& file : *files)
-        if (fs::weakly_canonical(file) == fs::weakly_canonical(record))
-          throw ArgumentError(
-              fmt::format("{} is a result; records need a file of their own", record.string()));
-  }
+  std::vector<NamedFile> others = {{"--config", options.config}};
+  const auto add = [&](const char* option, const std::vector<fs::path>& files) {
+    for (const fs::path& file : files) others.push_back({option, file});
+  };
+  add("INPUT", plan.files);
+  add("--truth", plan.truths);
+  for (const DenoiseOptions& setting : plan.settings)
+    others.push_back({"--skeleton", setting.reading.skeleton});
+  add("-o", plan.outputs.clean);
+  add("--outliers", plan.outputs.outliers);
+  add("--mask", plan.outputs.masks);
+  add("--sigma", plan.outputs.sigmas);
+  add("--report", plan.outputs.reports);
+  for (const auto& copies : plan.outputs.copies)
+    for (const FileCopy& copy : copies) {
+      others.push_back({"INPUT", copy.from});
+      others.push_back({"-o", copy.to});
+    }
+  if (!plan.outputs.root.empty()) others.push_back({"-o", plan.outputs.root / manifest_name});
+  const NamedFile records[] = {{"--json", options.json}, {"--lines", options.lines}};
+  require_apart(others, records);
 }
 
 bool runs_on_device(const BatchPlan& plan) {
@@ -243,14 +268,15 @@ ExitCode run_planned(const BatchPlan& plan, const StandardStreams& streams) {
   require_records_apart(plan);
   const bool on_device = runs_on_device(plan);
   if (on_device && options.backend == "opencl") require_driver();
-  const Interrupt interrupt;  // before the threads of the OpenCL driver
   OpenedBackend opened =
       open_backend(options, on_device, options.profile ? Profiling::on : Profiling::off);
   ResultsFolder folder(plan);
   TakeLines lines(options.lines);
   for (std::size_t i = 0; i < plan.files.size(); ++i)
     if (plan.done[i]) lines.add(left_out_record(plan, i));
-  RunReport report = run_shown(plan, streams, folder.manifest(), opened, lines, interrupt.token());
+  for (std::size_t i = 0; i < plan.passed_by.problems.size(); ++i)
+    lines.add(unreadable_record(plan, i));
+  RunReport report = run_shown(plan, streams, folder.manifest(), opened, lines);
   folder.finish();
   streams.send();
   lines.check();
@@ -263,7 +289,7 @@ ExitCode run_planned(const BatchPlan& plan, const StandardStreams& streams) {
   }
   if (!options.json.empty()) write_json(options.json, whole_record(plan, opened.report, report));
   if (options.reports() && !streams.writes()) print_report(plan, streams, report, opened.report);
-  return tell_problems(report);
+  return tell_problems(report, plan.passed_by.problems);
 }
 
 ExitCode plan_and_run(const DenoiseLayers& layers, const DenoiseOptions& options,
@@ -274,11 +300,14 @@ ExitCode plan_and_run(const DenoiseLayers& layers, const DenoiseOptions& options
   for (const std::string& warning : plan.warnings) warn("{}", warning);
   for (const std::string& note : plan.outputs.notes) warn("{}", note);
   if (options.dry_run) {
-    say("{}", streams.named(dry_run_text(plan)));
-    return ExitCode::done;
+    say("{}", Lines{streams.named(dry_run_text(plan))});
+    return tell_problems({}, plan.passed_by.problems);
   }
-  for (const fs::path& file : {options.json, options.lines})
-    if (!file.empty() && file != "-") require_writable(file);
+  for (const fs::path& file : {options.json, options.lines}) {
+    if (file.empty() || file == "-") continue;
+    require_writable(file);
+    remove_left_beside(file);
+  }
   return run_planned(plan, streams);
 }
 

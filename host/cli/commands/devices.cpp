@@ -40,7 +40,7 @@ ExitCode run(bool json) {
   if (json) {
     Json records = Json::array();
     for (const DeviceInfo& device : devices) records.push_back(device_record(device));
-    fmt::print("{}", to_text(records));
+    write_output(to_text(records));
     return ExitCode::done;
   }
   if (devices.empty())

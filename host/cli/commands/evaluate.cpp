@@ -139,7 +139,7 @@ ExitCode run(const EvaluateOptions& options) {
   const std::vector<Value> values = measured(evaluation);
 
   if (options.json)
-    fmt::print("{}", to_text(comparison_record(comparison, truth, values)));
+    write_output(to_text(comparison_record(comparison, truth, values)));
   else
     print_comparison(comparison, truth, values);
   return ExitCode::done;

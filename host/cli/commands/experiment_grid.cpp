@@ -9,7 +9,9 @@
 #include "moclean/experiment/run_cells.hpp"
 #include "moclean/experiment/summary.hpp"
 #include "moclean/formats/file.hpp"
+#include "moclean/formats/temporary_name.hpp"
 #include "moclean/run/outputs.hpp"
+#include "moclean/run/same_file.hpp"
 
 #include "cli/backend/driver_check.hpp"
 #include "cli/backend/open_backend.hpp"
@@ -60,9 +62,10 @@ bool any_needs_backend(const Experiment& experiment) {
   return false;
 }
 
-void compute(Grid& grid, const GridOptions& options, CellResults& kept, std::stop_token stop) {
+void compute(Grid& grid, const GridOptions& options, CellResults& kept) {
   const OpenedBackend opened = open_backend(options, any_needs_backend(grid.experiment));
   grid.device = opened.report.name;
+  const Interrupt interrupt;
   ProgressLine line("computing", options.prints(), "cells");
   grid.results =
       run_cells(grid.experiment, grid.cells,
@@ -73,7 +76,7 @@ void compute(Grid& grid, const GridOptions& options, CellResults& kept, std::sto
                  .memory = options.memory_limit / 2,
                  .results = &kept,
                  .monitor = {.report = [&](const Progress& progress) { line.show(progress); },
-                             .stop = std::move(stop)}});
+                             .stop = interrupt.token()}});
   grid.standings = ranking(grid.experiment, grid.cells, grid.results);
 }
 
@@ -181,8 +184,8 @@ void write_results(const Grid& grid, const GridOptions& options) {
                  grid_report(grid, options));
   if (!options.prints()) return;
   say("{}\nThe files are in {}: cells.jsonl, cells.csv, summary.json{}.\n",
-      markdown_table(ranking_table(grid.experiment, grid.standings)), options.output.string(),
-      report_available() && options.report.empty() ? ", report.html" : "");
+      Lines{markdown_table(ranking_table(grid.experiment, grid.standings))},
+      options.output.string(), report_available() && options.report.empty() ? ", report.html" : "");
 }
 
 void prepare(GridOptions& options) {
@@ -199,19 +202,30 @@ void make_folder(const fs::path& folder) {
   if (error) throw FileError(folder, "cannot be made: " + error.message());
 }
 
+void require_files_apart(const Grid& grid, const GridOptions& options) {
+  std::vector<NamedFile> read = {{"CONFIG", options.config}};
+  for (const ExperimentTake& take : grid.experiment.takes)
+    read.push_back({"the grid file", take.file});
+  std::vector<NamedFile> written = {{"--json", options.json}, {"--report", options.report}};
+  for (const char* name : {"cells.jsonl", "cells.csv", "summary.json", "report.html"})
+    written.push_back({"-o", options.output / name});
+  require_apart(read, written);
+}
+
 }  // namespace
 
 ExitCode run_grid(GridOptions options) {
   prepare(options);
   if (options.backend == "opencl") require_driver();
-  const Interrupt interrupt;  // before the threads of the OpenCL driver
   Grid grid = read(options);
   for (const fs::path& file : grid.missing)
     warn("{} is not there; this take is left out", file.string());
   make_folder(options.output);
+  require_files_apart(grid, options);
+  remove_left_in(options.output);
   CellResults kept(options.output / "cells.jsonl");
   try {
-    compute(grid, options, kept, interrupt.token());
+    compute(grid, options, kept);
   } catch (const Cancelled&) {
     warn("interrupted; finished cells are in {}, the same command continues", kept.file().string());
     return ExitCode::interrupted;

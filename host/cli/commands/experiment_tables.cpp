@@ -6,6 +6,7 @@
 #include "moclean/core/version.hpp"
 #include "moclean/experiment/run_cells.hpp"
 #include "moclean/run/outputs.hpp"
+#include "moclean/run/same_file.hpp"
 
 #include "cli/backend/driver_check.hpp"
 #include "cli/backend/open_backend.hpp"
@@ -121,10 +122,13 @@ ExitCode warn_of_unconverged(Index segments) {
 ExitCode run_table(TableOptions options) {
   complete_backend(options);
   if (options.backend == "opencl") require_driver();
-  const Interrupt interrupt;  // before the threads of the OpenCL driver
   if (!options.report.empty()) require_report();
   if (!options.report.empty()) require_writable(options.report);
   if (!options.json.empty() && options.json != "-") require_writable(options.json);
+  const NamedFile records[] = {{"--json", options.json}, {"--report", options.report}};
+  std::vector<NamedFile> read = {{"--skeleton", options.skeleton}};
+  for (const fs::path& file : expand_folders(options.inputs)) read.push_back({"TAKE", file});
+  require_apart(read, records);
   auto [takes, is_papers] = read_takes(options);
   const PaperExperiment paper =
       paper_experiment(options.table, std::move(takes), is_papers, seeds_up_to(options.seeds),
@@ -133,6 +137,7 @@ ExitCode run_table(TableOptions options) {
   const OpenedBackend opened = open_backend(options, true);
   std::vector<CellResult> results;
   {
+    const Interrupt interrupt;
     ProgressLine line("computing", options.prints(), "cells");
     results =
         run_cells(paper.experiment, paper.cells,
@@ -146,7 +151,7 @@ ExitCode run_table(TableOptions options) {
   const auto tables = paper_report_tables(options.table, paper, results);
   if (options.prints()) {
     say("{}, mean and standard deviation over {} seeds\n", title_of(options.table), options.seeds);
-    for (const ReportTable& table : tables) say("\n{}", markdown_table(table));
+    for (const ReportTable& table : tables) say("\n{}", Lines{markdown_table(table)});
   }
   if (!options.json.empty())
     write_json(options.json, table_record(options, opened.report.name, paper, results));

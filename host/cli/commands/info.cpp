@@ -71,7 +71,7 @@ void print_info(const std::filesystem::path& file, const Recording& clip) {
 ExitCode run(const InfoOptions& options) {
   const Recording clip = read_recording(options.file, options.reading);
   if (options.json)
-    fmt::print("{}", to_text(info_record(options.file, clip)));
+    write_output(to_text(info_record(options.file, clip)));
   else
     print_info(options.file, clip);
   return ExitCode::done;

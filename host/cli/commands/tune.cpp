@@ -8,6 +8,7 @@
 #include "moclean/core/version.hpp"
 #include "moclean/noise/motion_like.hpp"
 #include "moclean/run/outputs.hpp"
+#include "moclean/run/same_file.hpp"
 
 #include "cli/backend/driver_check.hpp"
 #include "cli/backend/tuning_cache.hpp"
@@ -32,7 +33,7 @@ void print_tried(const TriedTuning& tried) {
   const bool left_out = tried.repetitions == 0 && tried.result != TriedTuning::Result::wrong;
   say("{:<28}{:>10.2f} ms{:>8.3f}  {}{}\n", tried.choice, 1e3 * tried.seconds, tried.ratio,
       to_string(tried.result), left_out ? ", one run: too slow" : "");
-  std::fflush(stdout);
+  output_failure();  // shown as they come
 }
 
 Json record_of(const TuneOptions& options, Index segments, const DeviceInfo& device,
@@ -59,13 +60,14 @@ Json record_of(const TuneOptions& options, Index segments, const DeviceInfo& dev
 
 ExitCode run(const TuneOptions& options) {
   require_driver();
-  const Interrupt interrupt;  // before the threads of the OpenCL driver
   if (!options.json.empty() && options.json != "-") require_writable(options.json);
   const Device device(options.device);
   const auto file = tuning_file(device.info());
   if (file.empty())
     throw Error("there is no place for the tuning: neither XDG_CACHE_HOME nor HOME is set");
 
+  const NamedFile written[] = {{"--json", options.json}, {"the tuning", file}};
+  require_apart(written);
   const bool table = options.json != "-";
   const Index segments = options.quick ? 12 : 48;
   const ContestRules rules{.repetitions = options.quick ? 3 : 7, .quick = options.quick};
@@ -73,6 +75,7 @@ ExitCode run(const TuneOptions& options) {
     say("{}: {} segments of {} frames x {} columns\n{:<28}{:>13}{:>8}  {}\n", device.info().name,
         segments, options.frames, options.columns, "choice", "median", "ratio",
         "result, to the default's");
+  const Interrupt interrupt;
   const ContestReport report = find_best_tuning(
       device, motion_like(segments, options.frames, options.columns), rules,
       [&](const TriedTuning& tried) {

@@ -1,10 +1,13 @@
 #include "cli/options/checks.hpp"
 
-#include <cerrno>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <functional>
 #include <optional>
+#include <system_error>
+#include <utility>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -41,26 +44,44 @@ std::string found(const std::string& text) {
                              : fmt::format("found '{}'", text);
 }
 
-}  // namespace
-
-CLI::Validator positive_number() {
-  return {[](std::string& text) -> std::string {
+// `problem` is empty for numbers within the range.
+CLI::Validator number_check(std::function<std::string(double)> problem) {
+  return {[problem = std::move(problem)](std::string& text) -> std::string {
             const auto number = number_in(text);
             if (!number) return "must be a number, " + found(text);
-            if (!(*number > 0)) return "must be positive, " + found(text);
+            const std::string wrong = problem(*number);
+            if (!wrong.empty()) return fmt::format("{}, {}", wrong, found(text));
             return std::isinf(*number) ? "is too large, " + found(text) : "";
           },
           "", ""};
 }
 
+}  // namespace
+
+CLI::Validator number() {
+  return number_check([](double) { return ""; });
+}
+
+CLI::Validator positive_number() {
+  return number_check([](double number) { return number > 0 ? "" : "must be positive"; });
+}
+
 CLI::Validator number_from_zero() {
-  return {[](std::string& text) -> std::string {
-            const auto number = number_in(text);
-            if (!number) return "must be a number, " + found(text);
-            if (!(*number >= 0)) return "must not be negative, " + found(text);
-            return std::isinf(*number) ? "is too large, " + found(text) : "";
-          },
-          "", ""};
+  return number_check([](double number) { return number >= 0 ? "" : "must not be negative"; });
+}
+
+CLI::Validator number_above(double bound) {
+  return number_check([=](double number) -> std::string {
+    return number > bound ? "" : fmt::format("must be above {}", bound);
+  });
+}
+
+CLI::Validator number_between(double least, double most) {
+  return number_check([=](double number) -> std::string {
+    if (number >= least && number <= most) return "";
+    return least > 0 && number <= 0 ? "must be positive"
+                                    : fmt::format("must be {} to {}", least, most);
+  });
 }
 
 CLI::Validator whole_number(std::int64_t least, std::int64_t most) {
@@ -71,9 +92,22 @@ CLI::Validator whole_number(std::int64_t least, std::int64_t most) {
               return least == 1   ? "must be positive, " + found(text)
                      : least == 0 ? "must not be negative, " + found(text)
                                   : fmt::format("must be at least {}, {}", least, found(text));
-            if (*number > most || *number == INT64_MAX)
-              return most == INT64_MAX ? "is too large, " + found(text)
-                                       : fmt::format("must be at most {}, {}", most, found(text));
+            if (*number > most) return fmt::format("must be at most {}, {}", most, found(text));
+            text = fmt::format("{}", *number);  // CLI11 would take 010 as 8
+            return "";
+          },
+          "", ""};
+}
+
+CLI::Validator seed_number() {
+  return {[](std::string& text) -> std::string {
+            std::uint64_t number = 0;
+            const char* const end = text.data() + text.size();
+            const auto [stop, error] = std::from_chars(text.data(), end, number);
+            if (text.empty() || stop != end || error != std::errc{})
+              return fmt::format("must be a whole number from 0 to {}, {}", UINT64_MAX,
+                                 found(text));
+            text = fmt::format("{}", number);
             return "";
           },
           "", ""};

@@ -3,10 +3,9 @@
 #include <sstream>
 
 #include <fmt/format.h>
-#include <toml++/toml.h>
 
 #include "moclean/core/error.hpp"
-#include "moclean/formats/file.hpp"
+#include "moclean/experiment/toml_file.hpp"
 
 namespace moclean::cli {
 namespace {
@@ -65,12 +64,9 @@ Configuration::Folder folder_of(const fs::path& file, const toml::table& table) 
 }  // namespace
 
 Configuration read_configuration(const fs::path& file) {
-  const toml::parse_result result = toml::parse(read_file(file), file.string());
-  if (!result)
-    throw FileError(file, result.error().source().begin.line,
-                    std::string(result.error().description()));
+  const toml::table table = read_toml(file);
   Configuration configuration{.file = file, .settings = {}, .folders = {}};
-  for (const auto& [key, node] : result.table()) {
+  for (const auto& [key, node] : table) {
     if (key.str() != "folder") {
       configuration.settings.push_back(setting_of(file, key.str(), node));
       continue;

@@ -150,13 +150,16 @@ void add_method(CLI::App& command, DenoiseOptions& options) {
           ->type_name("X");
   auto* scale = command.add_option("--lambda-scale", method.lambda_scale, "SCALE of that default")
                     ->excludes(lambda)
+                    ->check(positive_number())
                     ->capture_default_str()
                     ->type_name("SCALE");
   auto* rho = command.add_option("--rho", method.rho, "Growth of mu per iteration, above 1")
+                  ->check(number_above(1))
                   ->capture_default_str()
                   ->type_name("X");
   auto* tolerance =
       command.add_option("--tolerance", options.tolerance, "Relative residual to stop at")
+          ->check(positive_number())
           ->default_str("1e-07, 1e-06 if mixed")
           ->type_name("X");
   auto* iterations =
@@ -224,7 +227,9 @@ void add_truth(CLI::App& command, DenoiseOptions& options) {
   command
       .add_option_function<std::string>(
           "--truth-frames",
-          [&](const std::string& text) { options.truth_frames = parse_frame_range(text); },
+          [&](const std::string& text) {
+            options.truth_frames = parse_frame_range(text, "--truth-frames");
+          },
           "Frames of the truth; default: --frames, of inputs and truth alike")
       ->needs(truth)
       ->type_name("A:B")

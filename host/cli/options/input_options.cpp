@@ -15,13 +15,17 @@
 namespace moclean::cli {
 namespace {
 
-std::optional<Index> parse_frame(std::string_view text, const std::string& whole) {
+// Of what moves, in Hz: a frame in ten days, a million in a second.
+constexpr double least_rate = 1e-6, most_rate = 1e6;
+
+std::optional<Index> parse_frame(std::string_view text, const std::string& problem) {
   if (text.empty()) return std::nullopt;
   Index frame = 0;
   const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), frame);
+  if (error == std::errc::result_out_of_range && stop == text.data() + text.size())
+    throw ArgumentError(fmt::format("{}; {} is too large", problem, text));
   if (error != std::errc{} || stop != text.data() + text.size() || frame < 0)
-    throw ArgumentError(fmt::format(
-        "--frames is '{}', expected A:B with whole numbers from 0, for instance 0:2800", whole));
+    throw ArgumentError(problem);
   return frame;
 }
 
@@ -31,15 +35,16 @@ std::string with_extensions(const std::string& text, FormatTrait trait) {
   return fmt::format("{} ({})", text, listed_extensions(trait));
 }
 
-FrameRange parse_frame_range(const std::string& text) {
+FrameRange parse_frame_range(const std::string& text, const std::string& option) {
   const std::string_view view = text;
   const std::size_t colon = view.find(':');
-  if (colon == view.npos)
-    throw ArgumentError(fmt::format("--frames is '{}', expected A:B, for instance 0:2800", text));
-  const FrameRange range{parse_frame(view.substr(0, colon), text),
-                         parse_frame(view.substr(colon + 1), text)};
+  const std::string problem = fmt::format(
+      "{} is '{}', expected A:B with whole numbers from 0, for instance 0:2800", option, text);
+  if (colon == view.npos) throw ArgumentError(problem);
+  const FrameRange range{parse_frame(view.substr(0, colon), problem),
+                         parse_frame(view.substr(colon + 1), problem)};
   if (range.last && range.first.value_or(0) >= *range.last)
-    throw ArgumentError(fmt::format("--frames {} holds no frame: A:B means A up to B - 1", text));
+    throw ArgumentError(fmt::format("{} {} holds no frame: A:B means A up to B - 1", option, text));
   return range;
 }
 
@@ -53,7 +58,7 @@ void add_frames_option(CLI::App& command, FrameRange& frames, const std::string&
 void add_file_options(CLI::App& command, double& rate, std::filesystem::path& skeleton) {
   command.add_option("--rate", rate, "Frame rate of files that state none")
       ->type_name("HZ")
-      ->check(positive_number());
+      ->check(number_between(least_rate, most_rate));
   command
       .add_option("--skeleton", skeleton,
                   "Skeleton of .amc files; otherwise the .asf beside them that fits their name")
@@ -83,6 +88,7 @@ void add_column_options(CLI::App& command, ReadOptions& options) {
           "--missing", options.missing,
           "A number that stands for a missing sample; may be given again. 0 is one where all "
           "coordinates of a point are 0")
+      ->check(number())
       ->type_size(1)
       ->allow_extra_args(false)
       ->type_name("VALUE");

@@ -15,8 +15,9 @@ namespace moclean::cli {
 /// A help text and the extensions of the formats of which `trait` is true: `Recording (.bvh .csv)`.
 std::string with_extensions(const std::string& text, FormatTrait trait);
 
-/// Reads `A:B`, `A:`, `:B` or `:`. Throws ArgumentError for anything else, and if A >= B.
-FrameRange parse_frame_range(const std::string& text);
+/// Reads `A:B`, `A:`, `:B` or `:`. Throws ArgumentError, naming the option, for anything else, and
+/// if A >= B.
+FrameRange parse_frame_range(const std::string& text, const std::string& option = "--frames");
 
 /// --frames, with the help text of a command.
 void add_frames_option(CLI::App& command, FrameRange& frames, const std::string& help);

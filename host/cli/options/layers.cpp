@@ -25,12 +25,16 @@ struct FreshCommand {
   // What CLI11 finds wrong becomes an ArgumentError; wants of an option that it `needs` another are
   // not for one line to fulfil.
   void parse(const std::vector<Setting>& settings, bool all) {
-    std::vector<std::string> arguments;
+    std::vector<std::string> arguments, inputs;
     for (const Setting& setting : settings)
       for (const std::string& value : setting.values)
-        arguments.push_back(setting.option == "input" ? value
-                            : setting.is_flag         ? "--" + setting.option
+        if (setting.option == "input")
+          inputs.push_back(value);
+        else
+          arguments.push_back(setting.is_flag ? "--" + setting.option
                                               : fmt::format("--{}={}", setting.option, value));
+    arguments.emplace_back("--");  // names may begin like options
+    arguments.insert(arguments.end(), inputs.begin(), inputs.end());
     std::ranges::reverse(arguments);  // as CLI11 takes them
     try {
       app.parse(arguments);

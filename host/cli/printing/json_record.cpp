@@ -10,6 +10,7 @@
 
 #include "cli/backend/tuning_cache.hpp"
 #include "cli/printing/backend_report.hpp"
+#include "cli/printing/standard_output.hpp"
 
 namespace moclean::cli {
 namespace {
@@ -160,7 +161,7 @@ std::string to_text(const Json& json) {
 
 void write_json(const std::filesystem::path& file, const Json& json) {
   if (file == "-") {
-    fmt::print("{}", to_text(json));
+    write_output(to_text(json));
     return;
   }
   AtomicFile target(file);

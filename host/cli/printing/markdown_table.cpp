@@ -5,11 +5,13 @@
 
 #include <fmt/format.h>
 
+#include "moclean/core/printable.hpp"
+
 namespace moclean::cli {
 namespace {
 
 std::string text_of(const ReportTable::Cell& cell) {
-  if (const auto* text = std::get_if<std::string>(&cell)) return *text;
+  if (const auto* text = std::get_if<std::string>(&cell)) return printable_line(*text);
   const double number = std::get<double>(cell);
   if (std::isnan(number)) return "-";
   const bool whole = number == std::round(number) && std::abs(number) < 1e15;
@@ -36,7 +38,7 @@ std::string markdown_table(const ReportTable& table) {
     return is_number(table, c) ? fmt::format("| {:>{}} ", text, widths[c])
                                : fmt::format("| {:<{}} ", text, widths[c]);
   };
-  std::string result = table.title + "\n";
+  std::string result = printable_line(table.title) + "\n";
   if (!table.note.empty()) result += table.note + "\n";
   result += '\n';
   for (std::size_t c = 0; c < widths.size(); ++c) result += aligned(c, table.columns[c]);

@@ -1,8 +1,8 @@
 #include "cli/printing/take_lines.hpp"
 
-#include <cstdio>
-
 #include "moclean/core/error.hpp"
+
+#include "cli/printing/standard_output.hpp"
 
 namespace moclean::cli {
 
@@ -16,8 +16,8 @@ void TakeLines::add(const Json& record) {
   if (file_.empty()) return;
   const std::string line = record.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
   if (file_ == "-") {
-    failed_ = std::fwrite(line.data(), 1, line.size(), stdout) != line.size() ||
-              std::fflush(stdout) != 0 || failed_;
+    write_output(line);
+    output_failure();  // flushes; the end of the program tells of it
     return;
   }
   stream_.write(line.data(), static_cast<std::streamsize>(line.size()));

@@ -2,15 +2,23 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "moclean/core/printable.hpp"
 #include "moclean/denoise/sample_status.hpp"
 
 namespace moclean::cli {
 namespace {
 
 namespace fs = std::filesystem;
+
+// Of names out of files, none of which ends it.
+template <class... Values>
+std::string line(fmt::format_string<Values...> format, Values&&... values) {
+  return printable_line(fmt::format(format, std::forward<Values>(values)...)) + "\n";
+}
 
 // `7`, or `5-9` if the segments differ.
 template <class Value>
@@ -74,14 +82,14 @@ bool is_changed_more(const TakeReport& a, const TakeReport& b) {
 }  // namespace
 
 std::string take_text(const TakeReport& take, const fs::path& result) {
-  std::string text = fmt::format(
-      "{} -> {}: {} frames x {} columns,{} {:.3f} s, {:.0f} frames/s; {}\n", take.file.string(),
-      result.string(), take.frames, take.columns, segments_text(take.segments), take.solve_seconds,
-      take.frames_per_second(), changes_text(take));
+  std::string text =
+      line("{} -> {}: {} frames x {} columns,{} {:.3f} s, {:.0f} frames/s; {}", take.file.string(),
+           result.string(), take.frames, take.columns, segments_text(take.segments),
+           take.solve_seconds, take.frames_per_second(), changes_text(take));
   if (take.truth)
-    text += fmt::format("{}: FD from the truth {:.4g} -> {:.4g}\n", take.file.string(),
-                        take.truth->fd_noisy, take.truth->fd_clean);
-  if (take.verification) text += agreement_line(take) + "\n";
+    text += line("{}: FD from the truth {:.4g} -> {:.4g}", take.file.string(), take.truth->fd_noisy,
+                 take.truth->fd_clean);
+  if (take.verification) text += line("{}", agreement_line(take));
   return text;
 }
 
@@ -108,10 +116,10 @@ std::string run_text(const RunReport& run, const std::vector<char>& done_before)
       "samples  {} of {} corrected ({}), {} filled ({})\n",
       done, failed, left_out, corrected, samples, share_text(corrected, samples), filled,
       share_text(filled, samples));
-  text += most ? fmt::format("largest  {}: {} of {} in frame {}\n", most->file.string(),
-                             distance_text(*most), most->changed.largest.joint,
-                             most->changed.largest.frame)
-               : "largest  nothing was moved\n";
+  text += most
+              ? line("largest  {}: {} of {} in frame {}", most->file.string(), distance_text(*most),
+                     most->changed.largest.joint, most->changed.largest.frame)
+              : "largest  nothing was moved\n";
   return text + fmt::format("seconds  {:.1f}\n", run.seconds.total);
 }
 

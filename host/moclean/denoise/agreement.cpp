@@ -13,11 +13,13 @@ namespace {
 // 0 in the place of NaN.
 Matrix present(const Matrix& values) { return values.array().isNaN().select(0, values); }
 
+// Of a part that is next to nothing, rounding of the data is all there is.
 double relative(const Matrix& tested, const Matrix& reference, double data_norm) {
+  constexpr double least_share = 1e-6;
   const double difference = difference_of(tested, reference).norm();
   if (difference == 0) return 0;
   const double norm = present(reference).norm();
-  return difference / (norm > 0 ? norm : data_norm);
+  return difference / (norm > least_share * data_norm ? norm : data_norm);
 }
 
 void require_same_shape(const Denoised& tested, const Denoised& reference) {

@@ -42,8 +42,9 @@ Matrix difference_of(const Matrix& tested, const Matrix& reference);
 inline constexpr AgreementBounds smoothing_agreement_bounds{.low_rank = 1e-6, .sparse = 1e-4};
 
 /// Compares a result with that of the reference, all segments of the take together.
-/// Where a part of the reference is zero, the difference is relative to |A_ref + E_ref|_F instead;
-/// 0/0 counts as 0. Throws ShapeError if the shapes or the segments differ.
+/// Where a part of the reference is less than a millionth of |A_ref + E_ref|_F, the difference is
+/// relative to that instead; 0/0 counts as 0. Throws ShapeError if the shapes or the segments
+/// differ.
 Agreement agreement(const Denoised& tested, const Denoised& reference);
 
 /// Every difference within its bound.

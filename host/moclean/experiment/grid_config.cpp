@@ -16,6 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::int64_t most_thinning = 1'000'000;
+constexpr double least_rate = 1e-6, most_rate = 1e6;  // Hz, as of --rate
+
 // The path with ${NAME} and ${NAME:-otherwise} replaced.
 std::string expanded(const TomlSection& section, std::string_view key, std::string_view path,
                      const Environment& environment) {
@@ -61,9 +64,9 @@ GridTake take_of(const TomlSection& section, const fs::path& config,
                                          section.text("frames")));
     take.frames = *frames;
   }
-  take.thin = section.count("thin");
+  take.thin = section.count("thin", most_thinning);
   take.optional = section.flag("optional");
-  take.rate = section.positive("rate");
+  take.rate = section.number("rate", least_rate, most_rate);
   if (section.has("skeleton")) take.skeleton = path_of(section, "skeleton", config, environment);
   take.excluded = excluded;
   for (std::string& fragment : section.texts("columns_exclude"))
@@ -173,12 +176,9 @@ std::optional<FrameSpan> parse_frame_span(std::string_view text) {
 
 GridConfig read_grid(const fs::path& file, const StepDefaults& defaults,
                      const Environment& environment) {
-  const toml::parse_result result = toml::parse(read_file(file), file.string());
-  if (!result)
-    throw FileError(file, result.error().source().begin.line,
-                    std::string(result.error().description()));
+  const toml::table table = read_toml(file);
   const Environment own = [](const char* name) { return std::getenv(name); };
-  return config_of(file, result.table(), defaults, environment ? environment : own);
+  return config_of(file, table, defaults, environment ? environment : own);
 }
 
 GridTakes read_takes(const GridConfig& config, const FrameSpan& frames) {

@@ -11,9 +11,9 @@
 // Only grid_config.cpp includes this file: toml++ takes a while to compile.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <toml++/toml.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/experiment/toml_file.hpp"
 
 namespace moclean {
 
@@ -60,21 +60,23 @@ class TomlSection {
     return *value;
   }
 
-  /// A number > 0, or 0 if the key is absent.
-  double positive(std::string_view key) const {
+  /// A number within bounds, or 0 if the key is absent.
+  double number(std::string_view key, double least, double most) const {
     const toml::node* node = table_.get(key);
     if (!node) return 0;
     const auto value = node->value<double>();
-    if (!value || !(*value > 0)) fail(key, expected("a number above 0", *node));
+    if (!value || !(*value >= least && *value <= most))
+      fail(key, expected(fmt::format("a number from {} to {}", least, most), *node));
     return *value;
   }
 
-  /// A whole number >= 1, or 1 if the key is absent.
-  std::int64_t count(std::string_view key) const {
+  /// A whole number of 1 to `most`, or 1 if the key is absent.
+  std::int64_t count(std::string_view key, std::int64_t most) const {
     const toml::node* node = table_.get(key);
     if (!node) return 1;
     const auto value = node->value_exact<std::int64_t>();
-    if (!value || *value < 1) fail(key, expected("a whole number of at least 1", *node));
+    if (!value || *value < 1 || *value > most)
+      fail(key, expected(fmt::format("a whole number of 1 to {}", most), *node));
     return *value;
   }
 
@@ -93,13 +95,16 @@ class TomlSection {
     return found;
   }
 
-  /// A whole number n >= 1, which stands for 1 .. n, or a list of whole numbers >= 0.
+  /// A whole number n of 1 to a million, which stands for 1 .. n, or a list of whole numbers >= 0.
   std::vector<std::uint64_t> seeds(std::string_view key) const {
-    constexpr const char* wanted = "how many (at least 1) or a list of whole numbers from 0";
+    constexpr std::int64_t most = 1'000'000;
+    const std::string wanted =
+        fmt::format("how many (1 to {}) or a list of whole numbers from 0", most);
     const toml::node* node = table_.get(key);
     if (!node) fail(key, fmt::format("missing, expected {}", wanted));
     std::vector<std::uint64_t> found;
-    if (const auto count = node->value_exact<std::int64_t>(); count && *count >= 1)
+    if (const auto count = node->value_exact<std::int64_t>();
+        count && *count >= 1 && *count <= most)
       for (std::int64_t seed = 1; seed <= *count; ++seed)
         found.push_back(static_cast<std::uint64_t>(seed));
     else if (node->is_array())

@@ -83,6 +83,11 @@ void smooth(const Butterworth& filter, double frame_rate, std::span<double> chan
     throw ArgumentError(
         fmt::format("butterworth: cutoff is {} Hz, expected less than half the frame rate of {} Hz",
                     filter.cutoff, frame_rate));
+  constexpr double least_share = 1e-5;
+  if (filter.cutoff < least_share * frame_rate)
+    throw ArgumentError(
+        fmt::format("butterworth: cutoff is {} Hz, expected at least {} of the frame rate of {} Hz",
+                    filter.cutoff, least_share, frame_rate));
   const std::vector<Section> sections = design(filter, frame_rate);
   const auto padding = static_cast<std::size_t>(3 * (filter.order + 1));
   for_each_run(channel, [&](std::span<double> run) { filter_run(sections, padding, run); });

@@ -42,9 +42,10 @@ class Smoother {
     Q_ = process_per_frame * process_per_frame * g * g.transpose();
   }
 
-  void operator()(std::span<double> channel) const {
+  // `range` is that of the samples.
+  void operator()(std::span<double> channel, double range) const {
     std::vector<Step<order>> steps(channel.size());
-    filter(channel, steps);
+    filter(channel, range, steps);
     State x = steps.back().x;
     write(x, channel.back());
     for (std::size_t t = steps.size() - 1; t-- > 0;) {
@@ -58,14 +59,9 @@ class Smoother {
   }
 
  private:
-  void filter(std::span<const double> channel, std::vector<Step<order>>& steps) const {
-    double least = channel.front(), most = least;
-    for (const double y : channel) {
-      if (std::isnan(y)) continue;
-      least = std::min(least, y);
-      most = std::max(most, y);
-    }
-    const double range = std::max(most - least, std::sqrt(R_));
+  void filter(std::span<const double> channel, double range,
+              std::vector<Step<order>>& steps) const {
+    range = std::max(range, std::sqrt(R_));
     State x = State::Zero();
     x(0) = channel.front();
     Covariance P = Covariance::Identity() * range * range;
@@ -98,26 +94,57 @@ class Smoother {
   double R_;
 };
 
-void require_positive(const char* name, double value) {
-  if (!(value > 0 && std::isfinite(value)))
-    throw ArgumentError(fmt::format("kalman: {} is {}, expected a positive number", name, value));
+void require_sensible(const char* name, const std::optional<double>& value) {
+  constexpr double least = 1e-100, most = 1e100;
+  if (value && !(*value >= least && *value <= most))
+    throw ArgumentError(fmt::format("kalman: {} is {}, expected a number from {} to {}", name,
+                                    *value, least, most));
+}
+
+double range_of(std::span<const double> channel) {
+  double least = channel.front(), most = least;
+  for (const double y : channel) {
+    if (std::isnan(y)) continue;
+    least = std::min(least, y);
+    most = std::max(most, y);
+  }
+  return most - least;
+}
+
+struct Deviations {
+  double process, measurement;
+};
+
+// See the struct.
+Deviations deviations_of(const KalmanSmoother& filter, double range) {
+  constexpr double ratio = 1000, share = 1e-3;
+  if (!filter.process && !filter.measurement) return {ratio * share * range, share * range};
+  return {filter.process.value_or(ratio), filter.measurement.value_or(1)};
 }
 
 }  // namespace
 
 void check(const KalmanSmoother& filter) {
-  require_positive("process", filter.process);
-  require_positive("measurement", filter.measurement);
+  require_sensible("process", filter.process);
+  require_sensible("measurement", filter.measurement);
 }
 
 void smooth(const KalmanSmoother& filter, double frame_rate, std::span<double> channel) {
   channel = between_ends(channel);
   if (channel.size() < 2) return;
-  const double process = filter.process / (frame_rate * frame_rate);  // lengths per frame squared
+  const double range = range_of(channel);
+  if (range == 0) return;  // a constant
+  const auto [process, measurement] = deviations_of(filter, range);
+  const double per_frame = process / (frame_rate * frame_rate);  // lengths per frame squared
+  // Squares of what is tiny or huge are no numbers: a power of two changes no digit.
+  const int exponent = std::ilogb(range);
+  const auto scaled = [&](double value) { return std::ldexp(value, -exponent); };
+  for (double& y : channel) y = scaled(y);
   if (filter.model == KalmanSmoother::Model::velocity)
-    Smoother<2>(process, filter.measurement)(channel);
+    Smoother<2>(scaled(per_frame), scaled(measurement))(channel, scaled(range));
   else
-    Smoother<3>(process, filter.measurement)(channel);
+    Smoother<3>(scaled(per_frame), scaled(measurement))(channel, scaled(range));
+  for (double& y : channel) y = std::ldexp(y, exponent);
 }
 
 }  // namespace moclean

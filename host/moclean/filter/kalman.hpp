@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -14,8 +15,10 @@ namespace moclean {
 /// sections 6.3.2 and 6.3.3):
 ///   velocity      x+ = x + v dt + w dt^2 / 2,  v+ = v + w dt
 ///   acceleration  x+ = x + v dt + a dt^2 / 2 + w dt^2 / 2,  v+ = v + a dt + w dt,  a+ = a + w
-/// A sample is the position plus N(0, measurement^2). Past
-/// the start only the ratio of the two deviations matters.
+/// A sample is the position plus N(0, measurement^2). Past the start only the ratio of the two
+/// deviations matters, so that where neither is given, the unit does not: `measurement` is a
+/// thousandth of the range of the channel then, and `process` 1000 times that. Where one is given,
+/// the other is 1000 or 1.
 ///
 /// The first observed sample is the first position; velocity and acceleration start from zero with
 /// a deviation that would carry them across the range of the channel in one frame, which leaves
@@ -24,8 +27,8 @@ struct KalmanSmoother {
   enum class Model { velocity, acceleration };
 
   Model model = Model::velocity;
-  double process = 1000;   ///< deviation of w, lengths per second squared, above 0
-  double measurement = 1;  ///< deviation of a sample, in the unit of the clip, above 0
+  std::optional<double> process = {};      ///< deviation of w, lengths per second squared
+  std::optional<double> measurement = {};  ///< deviation of a sample, in the unit of the clip
 
   bool operator==(const KalmanSmoother&) const = default;
 
@@ -39,7 +42,8 @@ struct KalmanSmoother {
   }
 };
 
-/// Throws ArgumentError for parameters out of range.
+/// Throws ArgumentError for parameters out of range: 1e-100 to 1e100, which leaves room for their
+/// squares.
 void check(const KalmanSmoother& filter);
 
 /// Filters one channel in place.

@@ -48,11 +48,14 @@ void put(const std::vector<double>& z, std::span<double> channel) {
     if (!std::isnan(channel[i])) channel[i] = z[i];
 }
 
+// The condition of the system is about 16 lambda (64 for differences of order 3).
+constexpr double largest_lambda = 1e10;
+
 template <class Filter>
 void check_penalty(const Filter& filter) {
-  if (!(filter.lambda > 0 && std::isfinite(filter.lambda)))
-    throw ArgumentError(
-        fmt::format("{}: lambda is {}, expected a positive number", Filter::name, filter.lambda));
+  if (!(filter.lambda > 0 && filter.lambda <= largest_lambda))
+    throw ArgumentError(fmt::format("{}: lambda is {}, expected a positive number up to {}",
+                                    Filter::name, filter.lambda, largest_lambda));
   if (filter.difference < 1 || filter.difference > BandMatrix::most_width)
     throw ArgumentError(
         fmt::format("{}: difference is {}, expected 1, 2 or 3", Filter::name, filter.difference));
@@ -67,9 +70,10 @@ void check(const RobustWhittaker& filter) {
   if (!(filter.delta > 0 && std::isfinite(filter.delta)))
     throw ArgumentError(
         fmt::format("whittaker-l1: delta is {}, expected a positive number", filter.delta));
-  if (filter.iterations < 1)
-    throw ArgumentError(
-        fmt::format("whittaker-l1: iterations is {}, expected at least 1", filter.iterations));
+  constexpr int most_iterations = 10'000;
+  if (filter.iterations < 1 || filter.iterations > most_iterations)
+    throw ArgumentError(fmt::format("whittaker-l1: iterations is {}, expected 1 to {}",
+                                    filter.iterations, most_iterations));
 }
 
 void smooth(const Whittaker& filter, double, std::span<double> channel) {
@@ -89,10 +93,12 @@ void smooth(const RobustWhittaker& filter, double, std::span<double> channel) {
   if (data.observed <= filter.difference) return;
   const BandMatrix band = difference_penalty(data.y.size(), order, 2 * filter.lambda);
   std::vector<double> z = solve(band, data.w, data.y);
+  const double least_weight = filter.lambda / largest_lambda;
   double moved = filter.delta;
   for (int i = 0; i < filter.iterations && moved > filter.delta / 1000; ++i) {
     for (std::size_t t = 0; t < z.size(); ++t)
-      if (data.w[t] > 0) data.w[t] = 1 / std::max(std::abs(data.y[t] - z[t]), filter.delta);
+      if (data.w[t] > 0)
+        data.w[t] = std::max(1 / std::max(std::abs(data.y[t] - z[t]), filter.delta), least_weight);
     const std::vector<double> next = solve(band, data.w, data.y);
     moved = 0;
     for (std::size_t t = 0; t < z.size(); ++t) moved = std::max(moved, std::abs(next[t] - z[t]));

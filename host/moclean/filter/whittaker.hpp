@@ -18,7 +18,7 @@ namespace moclean {
 /// A slow sinusoid of f Hz passes with the gain 1 / (1 + lambda (2 sin(pi f / rate))^(2
 /// difference)).
 struct Whittaker {
-  double lambda = 100;   ///< above 0; beyond 1e8 rounding is felt
+  double lambda = 100;   ///< above 0, at most 1e10; beyond 1e8 rounding is felt
   Index difference = 2;  ///< 1, 2 or 3
 
   bool operator==(const Whittaker&) const = default;
@@ -35,12 +35,13 @@ struct Whittaker {
 /// which gross errors do not pull: a sample's pull is 1 however far away it is. By reweighted least
 /// squares from the curve of weight 1 on: weights 1 / max(|y - z|, delta), so that errors
 /// below `delta` are measured by their square (Huber), until no sample moves by more than
-/// delta/1000, or `iterations` times.
+/// delta/1000, or `iterations` times. No weight is below lambda / 1e10, beyond which rounding would
+/// have the say: that limits how far away an error can be to pull no more than others.
 struct RobustWhittaker {
-  double lambda = 100;   ///< above 0; has the unit 1/length
+  double lambda = 100;   ///< above 0, at most 1e10; has the unit 1/length
   Index difference = 2;  ///< 1, 2 or 3
   double delta = 0.01;   ///< in the unit of the clip, above 0
-  int iterations = 100;  ///< >= 1
+  int iterations = 100;  ///< 1 to 10000
 
   bool operator==(const RobustWhittaker&) const = default;
 

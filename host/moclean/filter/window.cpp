@@ -15,10 +15,13 @@
 namespace moclean {
 namespace {
 
+// The work per frame is proportional to the window.
+constexpr Index longest_window = 9999;
+
 void require_odd(std::string_view filter, Index window) {
-  if (window < 1 || window % 2 == 0)
-    throw ArgumentError(
-        fmt::format("{}: window is {}, expected an odd number of frames", filter, window));
+  if (window < 1 || window % 2 == 0 || window > longest_window)
+    throw ArgumentError(fmt::format("{}: window is {}, expected an odd number of frames up to {}",
+                                    filter, window, longest_window));
 }
 
 // Weighted mean around each sample, weights[t] for the samples t frames before and after.
@@ -120,9 +123,11 @@ void for_each_window(Index window, std::span<double> channel, const Replace& rep
 void check(const MovingAverage& filter) { require_odd(MovingAverage::name, filter.window); }
 
 void check(const GaussianFilter& filter) {
-  if (!(filter.sd > 0 && filter.sd <= 1e6))
+  constexpr double largest_sd = 1000;
+  if (!(filter.sd > 0 && filter.sd <= largest_sd))
     throw ArgumentError(
-        fmt::format("gaussian: sd is {}, expected a positive number of frames", filter.sd));
+        fmt::format("gaussian: sd is {}, expected a positive number of frames up to {}", filter.sd,
+                    largest_sd));
 }
 
 void check(const MedianFilter& filter) { require_odd(MedianFilter::name, filter.window); }

@@ -13,7 +13,7 @@ namespace moclean {
 
 /// Mean of the window.
 struct MovingAverage {
-  Index window = 7;  ///< frames, odd
+  Index window = 7;  ///< frames, odd, at most 9999
 
   bool operator==(const MovingAverage&) const = default;
 
@@ -23,7 +23,7 @@ struct MovingAverage {
 
 /// Mean weighted by exp(-t^2 / (2 sd^2)), t frames from the centre, out to four deviations.
 struct GaussianFilter {
-  double sd = 2;  ///< frames, above 0
+  double sd = 2;  ///< frames, above 0, at most 1000
 
   bool operator==(const GaussianFilter&) const = default;
 
@@ -34,7 +34,7 @@ struct GaussianFilter {
 /// Median of the window; the mean of the two in the middle where it holds an even number of
 /// samples.
 struct MedianFilter {
-  Index window = 7;  ///< frames, odd
+  Index window = 7;  ///< frames, odd, at most 9999
 
   bool operator==(const MedianFilter&) const = default;
 
@@ -45,7 +45,7 @@ struct MedianFilter {
 /// Puts the median m of the window in the place of a sample farther than sigmas * 1.4826 MAD from
 /// it, MAD being the window's median of |x - m| (Hampel 1974); leaves all others as they are.
 struct Hampel {
-  Index window = 7;   ///< frames, odd
+  Index window = 7;   ///< frames, odd, at most 9999
   double sigmas = 3;  ///< >= 0
 
   bool operator==(const Hampel&) const = default;

@@ -1,7 +1,11 @@
 #include "moclean/formats/line_log.hpp"
 
+#include <cerrno>
 #include <system_error>
 #include <utility>
+
+#include <fcntl.h>
+#include <unistd.h>
 
 #include "moclean/core/error.hpp"
 #include "moclean/formats/file.hpp"
@@ -18,16 +22,31 @@ LineLog::LineLog(std::filesystem::path file) : file_(std::move(file)) {
     if (begin < text.size()) std::filesystem::resize_file(file_, begin, error);
     if (error) throw FileError(file_, "cannot be written: " + error.message());
   }
-  stream_.open(file_, std::ios::binary | std::ios::app);
-  if (!stream_) throw FileError(file_, "cannot be opened for writing");
+  descriptor_ = open(file_.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
+  if (descriptor_ < 0) fail();
+}
+
+LineLog::~LineLog() {
+  if (descriptor_ >= 0) close(descriptor_);
 }
 
 void LineLog::append(std::string_view line) {
-  std::string whole(line);
+  std::string whole(broken_ ? "\n" : "");
+  whole += line;
   whole += '\n';
-  stream_.write(whole.data(), static_cast<std::streamsize>(whole.size()));
-  stream_.flush();
-  if (!stream_) throw FileError(file_, "cannot be written: is the disk full?");
+  broken_ = true;
+  for (std::string_view rest = whole; !rest.empty();) {
+    const ssize_t some = write(descriptor_, rest.data(), rest.size());
+    if (some >= 0)
+      rest.remove_prefix(static_cast<std::size_t>(some));
+    else if (errno != EINTR)
+      fail();
+  }
+  broken_ = false;
+}
+
+void LineLog::fail() const {
+  throw FileError(file_, "cannot be written: " + std::generic_category().message(errno));
 }
 
 }  // namespace moclean

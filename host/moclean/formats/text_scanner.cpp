@@ -46,7 +46,7 @@ std::string excerpt(std::string_view text) {
     return length < text.size() && (static_cast<unsigned char>(text[length]) & 0xC0U) == 0x80U;
   };
   for (int i = 0; i < 3 && is_within_character() && length > 0; ++i) --length;
-  std::string shown = printable(text.substr(0, length));
+  std::string shown = printable_line(text.substr(0, length));
   for (std::size_t end = shown.find('\n'); end != std::string::npos; end = shown.find('\n', end))
     shown.replace(end, 1, "\\x0A");
   return fmt::format("'{}{}'", shown, length < text.size() ? "..." : "");

@@ -1,7 +1,10 @@
 #include "moclean/noise/noise.hpp"
 
+#include <fmt/format.h>
+
 #include "moclean/core/error.hpp"
 #include "moclean/core/parameters.hpp"
+#include "moclean/core/usable.hpp"
 
 namespace moclean {
 namespace {
@@ -20,6 +23,15 @@ std::string write(const Model& model) {
     return to_string(model);
   else
     return to_specification(model);
+}
+
+// No method takes what is larger, and squares of it are no numbers.
+void require_sensible(const Noise& noise, const Matrix& samples) {
+  constexpr double largest = 1e140;
+  if (const auto place = first_unusable(samples, true, largest))
+    throw ArgumentError(fmt::format("{}: makes {:.3g} of a sample in frame {}, expected at most {}",
+                                    to_string(noise), samples(place->frame, place->column),
+                                    place->frame, largest));
 }
 
 }  // namespace
@@ -65,6 +77,7 @@ Corrupted corrupt(const Recording& clip, const NoiseChain& chain, std::uint64_t 
   for (const Noise& noise : chain) {
     const auto add = [&](const auto& model) { return add_noise(model, random, result.clip); };
     result.touched = result.touched || std::visit(add, noise);
+    require_sensible(noise, result.clip.samples);
   }
   return result;
 }

@@ -73,7 +73,17 @@ Index number_of_runs(std::string_view noise, const Runs& runs, Index frames, Ind
   if (runs.length > frames)
     throw ArgumentError(fmt::format("{}: length is {}, but the clip has only {} frames", noise,
                                     runs.length, frames));
-  if (runs.count) return *runs.count;
+  if (runs.count) {
+    // Beyond that nothing is left that was not hit a hundred times.
+    const double most = 100.0 * static_cast<double>(places) * static_cast<double>(frames) /
+                        static_cast<double>(runs.length);
+    if (static_cast<double>(*runs.count) > std::max(1.0, most))
+      throw ArgumentError(
+          fmt::format("{}: count is {}, expected at most {:.0f} for a clip of this "
+                      "size",
+                      noise, *runs.count, std::max(1.0, most)));
+    return *runs.count;
+  }
   return std::llround(*runs.fraction * static_cast<double>(places * frames) /
                       static_cast<double>(runs.length));
 }

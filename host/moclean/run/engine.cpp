@@ -195,11 +195,19 @@ class Run {
     std::vector<Denoised> results;
     keep_if(batch, 1, [&](const Recording& clip, const TakeInHand& take) {
       try {
-        results.push_back(std::move(solver.solve({&clip, 1}, take.segments, expected).front()));
+        results.push_back(naming(job_.files[take.index], "clean it", [&] {
+          return std::move(solver.solve({&clip, 1}, take.segments, expected).front());
+        }));
       } catch (const TakeError& error) {
         throw FileError(job_.files[take.index], error.problem());
       } catch (const DeviceError& error) {
         throw DeviceError(fmt::format("{}: {}", job_.files[take.index].string(), error.what()));
+      } catch (const Cancelled&) {
+        throw;
+      } catch (const ArgumentError& error) {  // a wrong use, also where only a take shows it
+        throw ArgumentError(fmt::format("{}: {}", job_.files[take.index].string(), error.what()));
+      } catch (const Error& error) {
+        throw FileError(job_.files[take.index], error.what());
       }
     });
     return results;
@@ -243,6 +251,7 @@ class Run {
   // What the method has made becomes what the job asks for.
   void finish(const Recording& clip, TakeInHand& take) {
     TakeReport& report = report_.takes[take.index];
+    require_numbers(clip, take);
     if (job_.max_gap) leave_long_gaps(clip, *job_.max_gap, take.result);
     const Mask trusted = trusted_samples(clip, take.result);
     if (job_.keep_observed) keep_observed(clip, trusted, take.result);
@@ -256,6 +265,23 @@ class Run {
                                .fd_noisy = frobenius_distance(truth, clip.samples),
                                .fd_clean = frobenius_distance(truth, take.result.motion)};
     if (job_.outputs.reports.empty()) take.truth.reset();
+  }
+
+  // A sample that was observed and not rejected stays one: parameters out of proportion to the
+  // samples must not lose it without a word.
+  void require_numbers(const Recording& clip, const TakeInHand& take) const {
+    const Matrix& motion = take.result.motion;
+    const Mask lost = trusted_samples(clip, take.result) && !motion.array().isFinite();
+    if (!lost.any()) return;
+    Index frame = 0, column = 0;
+    lost.cast<int>().maxCoeff(&frame, &column);
+    throw FileError(
+        job_.files[take.index],
+        fmt::format("{} makes no number of {} in frame {}, column {}: do its parameters fit the "
+                    "size of the samples?",
+                    to_string(job_.chain), clip.samples(frame, column),
+                    job_.reading.frames.first.value_or(0) + frame,
+                    clip.columns[static_cast<std::size_t>(column)]));
   }
 
   void write(TakeBatch& batch) {

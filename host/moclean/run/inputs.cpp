@@ -31,30 +31,50 @@ bool is_looked_for(const Format& format) { return can_read(format) && &format !=
 // `NAME.raw.EXT` beside a `NAME.EXT`.
 bool is_kept_raw(const fs::path& file) {
   const fs::path stem = file.stem();
+  std::error_code ignored;
   return stem.extension() == ".raw" &&
-         fs::exists(file.parent_path() / (stem.stem() += file.extension()));
+         fs::exists(file.parent_path() / (stem.stem() += file.extension()), ignored);
 }
 
 bool lies_in(const fs::path& inner, const fs::path& outer) {
   return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
 }
 
+// What has the name of a recording and is no file.
+std::string kind_of(const fs::path& file) {
+  std::error_code error;
+  switch (fs::status(file, error).type()) {
+    case fs::file_type::fifo:
+      return "a pipe";
+    case fs::file_type::socket:
+      return "a socket";
+    case fs::file_type::block:
+    case fs::file_type::character:
+      return "a device";
+    case fs::file_type::not_found:
+      return "a link to nothing";
+    default:
+      return error ? error.message() : "no file";
+  }
+}
+
 // Goes through folders; enters each once, by whatever name it comes to it.
 class Walk {
  public:
-  explicit Walk(const LeavesOut& leave_out) : leave_out_(leave_out) {}
+  Walk(const LeavesOut& leave_out, PassedBy* passed) : leave_out_(leave_out), passed_(passed) {}
 
   // The recordings in a folder that are not among those of earlier folders.
   std::vector<fs::path> recordings_in(const fs::path& folder) {
     found_.clear();
     met_again_ = false;
+    given_ = folder;
     std::vector<fs::path> links = {folder};
     while (!links.empty()) {  // those in a linked folder are followed after it
       std::vector<fs::path> deeper;
       for (const fs::path& link : links) enter(link, deeper);
       links = std::move(deeper);
     }
-    if (found_.empty() && !met_again_)
+    if (found_.empty() && !met_again_ && (!passed_ || passed_->unreadable.empty()))
       throw FileError(folder, fmt::format("holds no recording ({})", any_extension(is_looked_for)));
     std::ranges::sort(found_);
     return std::move(found_);
@@ -69,11 +89,11 @@ class Walk {
       met_again_ = true;
       return;
     }
-    fs::directory_iterator entries;
-    if (!error) entries = fs::directory_iterator(folder, error);
-    if (error) throw FileError(folder, "cannot be read: " + error.message());
     std::vector<fs::path> inside;
-    for (const fs::directory_entry& entry : entries) inside.push_back(entry.path());
+    fs::directory_iterator entry, end;
+    if (!error) entry = fs::directory_iterator(folder, error);
+    for (; !error && entry != end; entry.increment(error)) inside.push_back(entry->path());
+    if (error) pass_by(folder, error);
     std::ranges::sort(inside);
     for (const fs::path& path : inside) {
       if (is_hidden(path) || (leave_out_ && leave_out_(path))) continue;
@@ -81,19 +101,30 @@ class Walk {
         add(path);
       else if (!fs::is_symlink(path))
         enter(path, links);
-      else if (!lies_in(real, fs::weakly_canonical(path)))  // else it leads back
+      else if (!lies_in(real, fs::weakly_canonical(path, error)))  // else it leads back
         links.push_back(path);
     }
   }
 
   void add(const fs::path& file) {
+    if (!is_of_format(file, is_looked_for) || is_kept_raw(file)) return;
     std::error_code ignored;
-    if (fs::is_regular_file(file, ignored) && is_of_format(file, is_looked_for) &&
-        !is_kept_raw(file))
+    if (fs::is_regular_file(file, ignored))
       found_.push_back(file);
+    else if (passed_)
+      passed_->skipped.push_back(fmt::format("{}: skipped, {}", file.string(), kind_of(file)));
+  }
+
+  void pass_by(const fs::path& folder, const std::error_code& error) {
+    const FileError problem(folder, "cannot be read: " + error.message());
+    if (!passed_ || folder == given_) throw problem;
+    passed_->unreadable.push_back(folder);
+    passed_->problems.emplace_back(problem.what());
   }
 
   const LeavesOut& leave_out_;
+  PassedBy* passed_;  // null: a folder that cannot be read ends the walk
+  fs::path given_;
   std::set<fs::path> entered_;
   bool met_again_ = false;  // a folder that was entered before
   std::vector<fs::path> found_;
@@ -108,16 +139,20 @@ fs::path place_of(const fs::path& file) {
 }  // namespace
 
 std::vector<fs::path> expand_folders(const std::vector<fs::path>& inputs,
-                                     const LeavesOut& leave_out) {
-  Walk walk(leave_out);
+                                     const LeavesOut& leave_out, PassedBy* passed) {
+  Walk walk(leave_out, passed);
   std::vector<fs::path> files;
   std::set<fs::path> places;
   const auto add = [&](const fs::path& file) {
     if (places.insert(place_of(file)).second) files.push_back(file);
   };
   for (const fs::path& input : inputs) {
-    if (!fs::exists(input)) throw FileError(input, "there is no such file or folder");
-    if (!fs::is_directory(input)) {
+    std::error_code error;
+    const fs::file_status there = fs::status(input, error);
+    if (there.type() == fs::file_type::not_found)
+      throw FileError(input, "there is no such file or folder");
+    if (!fs::exists(there)) throw FileError(input, "cannot be read: " + error.message());
+    if (!fs::is_directory(there)) {
       add(input);
       continue;
     }

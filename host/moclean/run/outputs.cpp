@@ -1,13 +1,13 @@
 #include "moclean/run/outputs.hpp"
 
 #include <array>
+#include <cerrno>
 #include <map>
 #include <optional>
 #include <set>
-#include <utility>
+#include <system_error>
 
 #include <fmt/format.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 #include "moclean/core/error.hpp"
@@ -15,8 +15,10 @@
 #include "moclean/formats/bvh.hpp"
 #include "moclean/formats/csv.hpp"
 #include "moclean/formats/extension.hpp"
+#include "moclean/formats/file.hpp"
 #include "moclean/formats/formats.hpp"
 #include "moclean/run/inputs.hpp"
+#include "moclean/run/same_file.hpp"
 
 namespace moclean {
 namespace {
@@ -141,11 +143,13 @@ void require_different(const Writer& a, const Writer& b, const fs::path& file) {
 }
 
 void require_different_files(const OutputRequest& request, OutputPlan& plan) {
-  std::map<fs::path, Writer> writers;
+  std::map<std::string, Writer> writers;
   const auto add = [&](const std::vector<fs::path>& files, const char* option) {
     for (std::size_t i = 0; i < files.size(); ++i) {
       const Writer writer{request.files[i], option};
-      const auto [other, is_new] = writers.emplace(fs::weakly_canonical(files[i]), writer);
+      const std::string key = file_key(files[i]);
+      if (key.empty()) continue;
+      const auto [other, is_new] = writers.emplace(key, writer);
       if (!is_new) require_different(other->second, writer, files[i]);
     }
   };
@@ -154,13 +158,10 @@ void require_different_files(const OutputRequest& request, OutputPlan& plan) {
   add(plan.reports, "--report");
 }
 
-// A file by whatever name, as far as it exists.
-using FileIdentity = std::pair<dev_t, ino_t>;
-
-std::optional<FileIdentity> identity_of(const fs::path& file) {
-  struct stat facts {};
-  if (stat(file.c_str(), &facts) != 0) return std::nullopt;
-  return FileIdentity{facts.st_dev, facts.st_ino};
+// Whether two names are those of one file that is there.
+bool is_same(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  return fs::equivalent(a, b, error);
 }
 
 // Where a result has replaced its input, that is what was kept of it. A file that is neither is a
@@ -169,8 +170,7 @@ void keep_inputs(const OutputRequest& request, OutputPlan& plan) {
   for (std::size_t i = 0; i < request.files.size(); ++i) {
     const fs::path& input = request.files[i];
     const fs::path kept = plan.clean[i].parent_path() / raw_name(input.filename());
-    const auto identity = identity_of(input);
-    if (!identity || identity != identity_of(plan.clean[i]) || !fs::exists(kept)) {
+    if (!is_same(input, plan.clean[i]) || !fs::exists(kept)) {
       plan.copies[i].push_back({input, kept});
       continue;
     }
@@ -192,22 +192,20 @@ void keep_skeletons(const OutputRequest& request, OutputPlan& plan) {
         request.files[i], request.skeletons.empty() ? fs::path() : request.skeletons[i]);
     if (!skeleton) continue;  // reading the take says why
     const fs::path beside = plan.clean[i].parent_path() / skeleton->filename();
-    if (identity_of(*skeleton) != identity_of(beside))
-      plan.copies[i].push_back({*std::move(skeleton), beside});
+    if (!is_same(*skeleton, beside)) plan.copies[i].push_back({*std::move(skeleton), beside});
   }
 }
 
 void require_no_input(const OutputRequest& request, const OutputPlan& plan) {
-  std::map<FileIdentity, const fs::path*> read;
+  std::map<std::string, const fs::path*> read;
   const auto add = [&](const std::vector<fs::path>& files) {
     for (const fs::path& file : files)
-      if (const auto identity = identity_of(file)) read.emplace(*identity, &file);
+      if (const std::string key = file_key(file); !key.empty()) read.emplace(key, &file);
   };
   add(request.files);
   add(request.also_read);
   const auto require = [&](const fs::path& output, const fs::path* allowed) {
-    const auto identity = identity_of(output);
-    const auto input = identity ? read.find(*identity) : read.end();
+    const auto input = read.find(file_key(output));
     if (input == read.end() || (allowed && *input->second == *allowed)) return;
     throw ArgumentError(fmt::format(
         "{} is an input{}; --force replaces it, --keep-raw keeps it as {} beside the result",
@@ -297,14 +295,18 @@ fs::path InputFolders::below(const fs::path& file) const {
 }
 
 void require_other_file(const fs::path& input, const fs::path& output) {
-  const auto identity = identity_of(input);
-  if (identity && identity == identity_of(output))
+  const std::string key = file_key(input);
+  if (!key.empty() && key == file_key(output))
     throw ArgumentError(fmt::format("{} is an input; --force replaces it", output.string()));
 }
 
 void require_writable(const fs::path& file) {
-  if (fs::is_directory(file)) throw FileError(file, "cannot be written: it is a folder");
-  require_writable_folder(folder_of(file), file);
+  std::error_code error;
+  if (fs::is_directory(file, error)) throw FileError(file, "cannot be written: it is a folder");
+  const auto place = place_of_new(file);
+  if (place) require_writable_folder(folder_of(*place), file);
+  if (access(file.c_str(), F_OK) == 0 ? access(file.c_str(), W_OK) != 0 : !place)
+    throw FileError(file, "cannot be written: " + std::generic_category().message(errno));
 }
 
 void require_writable_recording(const fs::path& file) {

@@ -83,7 +83,8 @@ void require_writable_recording(const std::filesystem::path& file);
 /// Throws ArgumentError if the two are one file, also through links.
 void require_other_file(const std::filesystem::path& input, const std::filesystem::path& output);
 
-/// Throws FileError unless the file's folder exists and can be written.
+/// Throws FileError unless the file's folder exists and can be written; of a file, device or pipe
+/// that is there, unless that can be written.
 void require_writable(const std::filesystem::path& file);
 
 }  // namespace moclean

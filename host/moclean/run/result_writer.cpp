@@ -6,6 +6,7 @@
 
 #include "moclean/core/error.hpp"
 #include "moclean/formats/read_write.hpp"
+#include "moclean/formats/unfinished.hpp"
 
 namespace moclean {
 namespace {
@@ -35,16 +36,24 @@ NewFolders::NewFolders(const std::vector<fs::path>& folders) : NewFolders() {
   for (const fs::path& folder : folders)
     for (const fs::path& missing : missing_folders(folder)) {
       std::error_code error;
-      fs::create_directory(missing, error);
+      const bool made =
+          make_unfinished(missing, [&] { return fs::create_directory(missing, error); });
       if (error) throw FileError(missing, "cannot be created: " + error.message());
-      created_.push_back(missing);
+      if (made) created_.push_back(missing);
     }
 }
 
 NewFolders::~NewFolders() {
-  std::error_code ignored;  // another program may have put a file there
   for (auto folder = created_.rbegin(); folder != created_.rend(); ++folder)
-    fs::remove(*folder, ignored);
+    settle_unfinished(*folder, [&] {
+      std::error_code ignored;  // another program may have put a file there
+      fs::remove(*folder, ignored);
+    });
+}
+
+void NewFolders::keep() {
+  for (const fs::path& folder : created_) settle_unfinished(folder, [] {});
+  created_.clear();
 }
 
 ResultWriter::ResultWriter(const Job& job, RunLog& log)
@@ -97,7 +106,10 @@ void ResultWriter::work() {
         const std::lock_guard lock(mutex_);
         if (failure_) continue;
       }
-      log_.attempt(take->index, [&] { keep(take->index, written(*take)); });
+      log_.attempt(take->index, [&] {
+        keep(take->index,
+             naming(plan_.clean[take->index], "write it", [&] { return written(*take); }));
+      });
     } catch (...) {
       const std::lock_guard lock(mutex_);
       if (!failure_) failure_ = std::current_exception();

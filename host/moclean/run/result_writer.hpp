@@ -41,7 +41,7 @@ class NewFolders {
   NewFolders(const NewFolders&) = delete;
   NewFolders& operator=(const NewFolders&) = delete;
 
-  void keep() { created_.clear(); }
+  void keep();
 
  private:
   std::vector<std::filesystem::path> created_;  // outer before inner

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <exception>
+#include <filesystem>
 #include <mutex>
+#include <new>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +13,16 @@
 #include "moclean/run/job.hpp"
 
 namespace moclean {
+
+/// Calls `work`; where the memory does not suffice, the error names the file and what was done.
+template <class Work>
+auto naming(const std::filesystem::path& file, const char* deed, const Work& work) {
+  try {
+    return work();
+  } catch (const std::bad_alloc&) {
+    throw FileError(file, std::string("there is not enough memory to ") + deed);
+  }
+}
 
 /// Tells the sink of a run what happens, and keeps which takes failed. Any number of threads may
 /// use it.

@@ -29,6 +29,20 @@ Index segments_of(const Segmentation& segmentation, const Recording& clip) {
   return static_cast<Index>(plan(segmentation, clip.frames()).size()) - 1;
 }
 
+// Matrix methods square samples: of all squares 0 the result would be 0, too.
+void require_size(const Recording& recording, const fs::path& file, const Chain& chain) {
+  constexpr double least = 1e-140;
+  const auto squares = [](const Step& step) { return std::holds_alternative<LowRank>(step); };
+  const auto step = std::ranges::find_if(chain, squares);
+  if (step == chain.end()) return;
+  const double most =
+      recording.samples.array().isNaN().select(0, recording.samples).cwiseAbs().maxCoeff();
+  if (most > 0 && most < least)
+    throw FileError(file, fmt::format("has no sample larger than {:.3g}; {} needs some of {} at "
+                                      "least: state them in another unit",
+                                      most, name_of(*step), least));
+}
+
 }  // namespace
 
 TakeReader::TakeReader(const Job& job, const BatchRules& rules, MemoryBudget& budget, RunLog& log,
@@ -72,12 +86,14 @@ TakeReader::Take TakeReader::read(std::size_t index, MemoryShare memory) {
   const BusyClock::Work work(clock_);
   require_room(index, file_bytes_[index]);
   Take take;
-  take.clip = read_recording(job_.files[index], job_.reading);
+  take.clip = naming(job_.files[index], "read it",
+                     [&] { return read_recording(job_.files[index], job_.reading); });
   if (job_.from_rotations && !clean_rotations(take.clip))
     throw FileError(job_.files[index],
                     "--from-rotations: has no rotations of a skeleton, expected " +
                         any_extension(has_skeleton));
   require_solvable(take.clip, job_.files[index], job_.reading.frames, rules_.needs);
+  require_size(take.clip, job_.files[index], job_.chain);
   const std::uint64_t bytes = bytes_of(take.clip, rules_.copies_solving);
   require_room(index, bytes);
   memory.resize(bytes);
