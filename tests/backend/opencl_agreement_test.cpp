@@ -11,9 +11,7 @@ namespace {
 
 using test::BackendKind;
 
-struct Shape {
-  Index rows, columns;
-};
+using test::Shape;
 
 void expect_agreement(const SegmentBatch& data, const RobustPca& method,
                       BackendKind tested = BackendKind::opencl_cpu) {
@@ -48,7 +46,7 @@ TEST_P(OpenClAgreement, OnPlantedProblemsOfOddShapes) {
   expect_agreement(data, {.lambda_scale = degenerate ? 1.1 : 1, .order = order}, kind);
 }
 
-std::string name_of(const testing::TestParamInfo<OpenClAgreement::ParamType>& parameter) {
+std::string name_of_agreement(const testing::TestParamInfo<OpenClAgreement::ParamType>& parameter) {
   const auto& [kind, order, shape] = parameter.param;
   return to_string(kind) + "_" + to_string(order) + "_" + std::to_string(shape.rows) + "x" +
          std::to_string(shape.columns);
@@ -61,14 +59,14 @@ INSTANTIATE_TEST_SUITE_P(
                      testing::Values(UpdateOrder::ae, UpdateOrder::ea),
                      testing::Values(Shape{1, 1}, Shape{3, 5}, Shape{64, 64}, Shape{200, 93},
                                      Shape{61, 129}, Shape{25, 93}, Shape{100, 1}, Shape{1, 93})),
-    name_of);
+    name_of_agreement);
 
 INSTANTIATE_TEST_SUITE_P(
     WorkGroups, OpenClAgreement,
     testing::Combine(testing::Values(BackendKind::opencl_gpu64, BackendKind::opencl_gpu256),
                      testing::Values(UpdateOrder::ae, UpdateOrder::ea),
                      testing::Values(Shape{3, 5}, Shape{25, 93}, Shape{70, 33})),
-    name_of);
+    name_of_agreement);
 
 // All kernels, in so few steps that Oclgrind, which interprets them, is soon done; 257 rows are two
 // blocks.

@@ -31,7 +31,7 @@ RobustPca method_of(UpdateOrder order, Precision precision) {
   return {.tolerance = precision == Precision::mixed ? mixed_tolerance : 1e-7, .order = order};
 }
 
-void expect_same_bits(const Solution& a, const Solution& b) {
+void expect_untuned_bits(const Solution& a, const Solution& b) {
   for (Index s = 0; s < a.low_rank.segments(); ++s) {
     const auto i = static_cast<std::size_t>(s);
     EXPECT_TRUE(test::same_bits(Matrix(a.low_rank.segment(s)), Matrix(b.low_rank.segment(s))));
@@ -56,12 +56,12 @@ void expect_close(const Solution& a, const Solution& b) {
   }
 }
 
-struct Case {
+struct TuningCase {
   UpdateOrder order;
   Precision precision;
 };
 
-class TuningTest : public testing::TestWithParam<Case> {};
+class TuningTest : public testing::TestWithParam<TuningCase> {};
 
 TEST_P(TuningTest, TilesSweepsPanelsAndBatchesLeaveEveryBit) {
   const auto [order, precision] = GetParam();
@@ -74,15 +74,15 @@ TEST_P(TuningTest, TilesSweepsPanelsAndBatchesLeaveEveryBit) {
     OpenClBackend tuned(test::device(), {.precision = precision, .tuning = tuning});
     for (const SegmentBatch& data : batches) {
       SCOPED_TRACE(to_string(tuning));
-      expect_same_bits(tuned.solve(data, method), usual.solve(data, method));
+      expect_untuned_bits(tuned.solve(data, method), usual.solve(data, method));
     }
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Modes, TuningTest,
-                         testing::Values(Case{UpdateOrder::ae, Precision::f64},
-                                         Case{UpdateOrder::ea, Precision::f64},
-                                         Case{UpdateOrder::ae, Precision::mixed}));
+                         testing::Values(TuningCase{UpdateOrder::ae, Precision::f64},
+                                         TuningCase{UpdateOrder::ea, Precision::f64},
+                                         TuningCase{UpdateOrder::ae, Precision::mixed}));
 
 TEST(Tuning, GroupFormOfTheEigensolverAgreesWithTheLanes) {
   OpenClBackend group(test::device(), {.tuning = Tuning{.eigen = KernelForm::gpu}});
@@ -100,8 +100,8 @@ TEST(Tuning, GroupFormDoesNotDependOnTheNeighbours) {
   const Tuning alone{.eigen = KernelForm::gpu, .batch_segments = 1};
   const SegmentBatch data = usual_segments();
 
-  expect_same_bits(OpenClBackend(test::device(), {.tuning = together}).solve(data, RobustPca{}),
-                   OpenClBackend(test::device(), {.tuning = alone}).solve(data, RobustPca{}));
+  expect_untuned_bits(OpenClBackend(test::device(), {.tuning = together}).solve(data, RobustPca{}),
+                      OpenClBackend(test::device(), {.tuning = alone}).solve(data, RobustPca{}));
 }
 
 TEST(Tuning, WorkGroupsOfTheGpuFormLeaveEveryBit) {
@@ -114,7 +114,7 @@ TEST(Tuning, WorkGroupsOfTheGpuFormLeaveEveryBit) {
   for (const UpdateOrder order : {UpdateOrder::ae, UpdateOrder::ea}) {
     const RobustPca method{.order = order};
     const Solution expected = solve(method, 256);
-    for (const int work_group : {64, 128}) expect_same_bits(solve(method, work_group), expected);
+    for (const int work_group : {64, 128}) expect_untuned_bits(solve(method, work_group), expected);
   }
 }
 
@@ -210,7 +210,7 @@ TEST(Profiling, LeavesResultsAsTheyAreAndSeesEveryIteration) {
   const Solution solution = OpenClBackend(profiled, {.tuning = Tuning{}}).solve(data, RobustPca{});
 
   OpenClBackend usual(test::device(), {.tuning = Tuning{}});
-  expect_same_bits(solution, usual.solve(data, RobustPca{}));
+  expect_untuned_bits(solution, usual.solve(data, RobustPca{}));
   int iterations = 0;
   for (const SegmentOutcome& segment : solution.segments)
     iterations = std::max(iterations, segment.iterations);
@@ -239,7 +239,7 @@ TEST(Profiling, KnowsTheWorkOfProductsInWorkGroups) {
   const Solution solution = OpenClBackend(profiled, {.tuning = tuning}).solve(data, RobustPca{});
 
   OpenClBackend usual(test::device(), {.tuning = tuning});
-  expect_same_bits(solution, usual.solve(data, RobustPca{}));
+  expect_untuned_bits(solution, usual.solve(data, RobustPca{}));
   const auto kernels = profiled.profile()->kernels();
   for (const char* name : {"gram", "apply", "reconstruct", "shrink"}) {
     const auto kernel = std::ranges::find(kernels, name, &KernelProfile::kernel);

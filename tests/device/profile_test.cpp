@@ -13,7 +13,7 @@ constexpr std::string_view source = R"(
 kernel void fill(global double* x, double value) { x[get_global_id(0)] = value; }
 kernel void clear(global double* x) { x[get_global_id(0)] = 0; }
 )";
-const Defines defines = {{"REAL", "double"}, {"VW", "1"}, {"BLOCK_ROWS", "32"}};
+const Defines profiled_defines = {{"REAL", "double"}, {"VW", "1"}, {"BLOCK_ROWS", "32"}};
 
 const Device& profiled_device() {
   static const Device* device = new Device(test::device().info().name, Profiling::on);
@@ -24,7 +24,7 @@ MATCHER_P2(IsWork, flops, bytes, "") { return arg.flops == flops && arg.bytes ==
 
 TEST(Profile, CountsCallsTimeAndWork) {
   const Device& device = profiled_device();
-  const Program program(device, source, defines);
+  const Program program(device, source, profiled_defines);
   Kernel fill(program, "fill"), clear(program, "clear");
   Buffer<double> x(device, 64);
 
@@ -77,8 +77,8 @@ TEST(Profile, OfAnotherQueueIsThatOfTheDevice) {
   const Device& device = profiled_device();
   const Device another(device, Device::AnotherQueue{});
   device.profile()->clear();
-  Kernel here(Program(device, source, defines), "fill");
-  Kernel there(Program(another, source, defines), "fill");
+  Kernel here(Program(device, source, profiled_defines), "fill");
+  Kernel there(Program(another, source, profiled_defines), "fill");
   Buffer<double> x(device, 64), y(another, 64);
   std::vector<double> values(64);
 
@@ -93,7 +93,7 @@ TEST(Profile, OfAnotherQueueIsThatOfTheDevice) {
 }
 
 TEST(Profile, IsNotThereAndAsksForNoWorkUnlessItIsOn) {
-  const Program program(test::device(), source, defines);
+  const Program program(test::device(), source, profiled_defines);
   Kernel clear(program, "clear");
   Buffer<double> x(test::device(), 64);
   bool asked = false;

@@ -131,7 +131,7 @@ TEST_P(BandedTest, SolvesByASharedFactorWithASmallBackwardError) {
   EXPECT_EQ(padding_of(x), 0);
 }
 
-std::string name_of(const testing::TestParamInfo<BandedTest::ParamType>& parameter) {
+std::string name_of_banded(const testing::TestParamInfo<BandedTest::ParamType>& parameter) {
   const auto& [width, columns, gamma] = parameter.param;
   const std::string size = gamma < 1 ? "Small" : gamma > 1 ? "Large" : "One";
   return "Width" + std::to_string(width) + "Columns" + std::to_string(columns) + "Gamma" + size;
@@ -141,7 +141,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, BandedTest,
                          testing::Combine(testing::Values(1, 2, 3),
                                           testing::Values<Index>(1, 8, 17, 93),
                                           testing::Values(1e-6, 1.0, 1e8)),
-                         name_of);
+                         name_of_banded);
 
 class BandedWidth : public testing::TestWithParam<int> {};
 

@@ -2,6 +2,7 @@
 #include <limits>
 #include <tuple>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "moclean/linalg/memory_layout.hpp"
@@ -13,12 +14,13 @@
 namespace moclean {
 namespace {
 
-struct Way {
+struct FloatWay {
   const char* name;
   Tuning tuning;
 };
 
-class FloatProducts : public testing::TestWithParam<std::tuple<Way, std::pair<Index, Index>>> {};
+class FloatProducts : public testing::TestWithParam<std::tuple<FloatWay, std::pair<Index, Index>>> {
+};
 
 // All five products of a batch of three segments, from the same floats whatever Real is.
 template <class Real>
@@ -93,19 +95,21 @@ TEST_P(FloatProducts, AreThoseOfDoubleToSinglePrecision) {
   }
 }
 
-std::string name_of(const testing::TestParamInfo<FloatProducts::ParamType>& parameter) {
+std::string name_of_float_products(
+    const testing::TestParamInfo<FloatProducts::ParamType>& parameter) {
   const auto& [way, shape] = parameter.param;
   return fmt::format("{}_{}x{}", way.name, shape.first, shape.second);
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Shapes, FloatProducts,
-    testing::Combine(testing::Values(Way{"own", {}},
-                                     Way{"GroupWG64", {.form = KernelForm::gpu, .work_group = 64}},
-                                     Way{"clblast", {.products = ProductPath::clblast}}),
+    testing::Combine(testing::Values(FloatWay{"own", {}},
+                                     FloatWay{"GroupWG64",
+                                              {.form = KernelForm::gpu, .work_group = 64}},
+                                     FloatWay{"clblast", {.products = ProductPath::clblast}}),
                      testing::Values(std::pair<Index, Index>{3, 5}, std::pair<Index, Index>{17, 1},
                                      std::pair<Index, Index>{300, 93})),
-    name_of);
+    name_of_float_products);
 
 }  // namespace
 }  // namespace moclean

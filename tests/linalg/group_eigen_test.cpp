@@ -16,14 +16,14 @@ namespace {
 using test::nan;
 
 /// Eigenvectors in rows and eigenvalues of every matrix, with the padding.
-struct Decomposition {
+struct GroupDecomposition {
   std::vector<Matrix> vectors;
   std::vector<Eigen::VectorXd> values;
 };
 
 // The matrices of one order, decomposed as one batch. Padding and lower triangles hold NaN at
 // first, as does the result, so that what is read or not written shows.
-Decomposition decompose(GroupEigen& eigen, const std::vector<Matrix>& matrices) {
+GroupDecomposition decompose(GroupEigen& eigen, const std::vector<Matrix>& matrices) {
   const Index n = matrices.front().rows();
   const SegmentBatch shape = test::batch_of(matrices);
   const Device& device = test::device();
@@ -45,7 +45,7 @@ Decomposition decompose(GroupEigen& eigen, const std::vector<Matrix>& matrices) 
   z.read(squares);
   d.read(values);
 
-  Decomposition result;
+  GroupDecomposition result;
   for (Index b = 0; b < shape.segments(); ++b) {
     const SegmentRecord& s = batch.segment(b);
     result.vectors.push_back(Eigen::Map<const Matrix>(squares.data() + s.square, n, s.order_pitch));
@@ -55,18 +55,18 @@ Decomposition decompose(GroupEigen& eigen, const std::vector<Matrix>& matrices) 
   return result;
 }
 
-Decomposition decompose(const GroupLimits& limits, const std::vector<Matrix>& matrices) {
+GroupDecomposition decompose(const GroupLimits& limits, const std::vector<Matrix>& matrices) {
   GroupEigen eigen(test::device(), limits);
   return decompose(eigen, matrices);
 }
 
-std::vector<Matrix> every_kind(Index n) {
+std::vector<Matrix> kinds_of_order(Index n) {
   std::vector<Matrix> matrices;
   for (const test::SymmetricKind& kind : test::symmetric_kinds()) matrices.push_back(kind.make(n));
   return matrices;
 }
 
-void expect_same_bits(const Decomposition& a, const Decomposition& b) {
+void expect_same_bits(const GroupDecomposition& a, const GroupDecomposition& b) {
   ASSERT_EQ(a.vectors.size(), b.vectors.size());
   for (std::size_t i = 0; i < a.vectors.size(); ++i) {
     EXPECT_TRUE(test::same_bits(a.vectors[i], b.vectors[i])) << "vectors of matrix " << i;
@@ -76,7 +76,7 @@ void expect_same_bits(const Decomposition& a, const Decomposition& b) {
 
 // Residual, orthogonality and order. The matrix is scaled to entries near 1 first, so that norms of
 // the tiny and the huge do not leave the range.
-void expect_accurate(const Matrix& matrix, const Decomposition& result, std::size_t b) {
+void expect_accurate(const Matrix& matrix, const GroupDecomposition& result, std::size_t b) {
   const Index n = matrix.rows();
   const double scale = std::max(matrix.cwiseAbs().maxCoeff(), 1e-300);
   const Matrix g = matrix / scale, z = result.vectors[b].leftCols(n);
@@ -92,9 +92,9 @@ class GroupEigenTest : public testing::TestWithParam<std::tuple<int, Index>> {};
 
 TEST_P(GroupEigenTest, DecomposesEveryKindOfMatrixToRounding) {
   const auto& [work_group, n] = GetParam();
-  const std::vector<Matrix> matrices = every_kind(n);
+  const std::vector<Matrix> matrices = kinds_of_order(n);
 
-  const Decomposition result = decompose({.work_group = work_group}, matrices);
+  const GroupDecomposition result = decompose({.work_group = work_group}, matrices);
 
   for (std::size_t b = 0; b < matrices.size(); ++b) {
     SCOPED_TRACE(test::symmetric_kinds()[b].name);
@@ -114,7 +114,7 @@ TEST(GroupEigen, DecomposesMatricesOfOrder512ToRounding) {
       matrices.push_back(kind.make(512));
   ASSERT_EQ(matrices.size(), 3u);
 
-  const Decomposition result = decompose({.work_group = 256}, matrices);
+  const GroupDecomposition result = decompose({.work_group = 256}, matrices);
 
   for (std::size_t b = 0; b < matrices.size(); ++b) expect_accurate(matrices[b], result, b);
 }
@@ -122,7 +122,7 @@ TEST(GroupEigen, DecomposesMatricesOfOrder512ToRounding) {
 TEST_P(GroupEigenTest, ClearsThePadding) {
   const auto& [work_group, n] = GetParam();
 
-  const Decomposition result =
+  const GroupDecomposition result =
       decompose({.work_group = work_group}, {test::random_symmetric(n, 11)});
 
   const Matrix& z = result.vectors[0];
@@ -130,7 +130,7 @@ TEST_P(GroupEigenTest, ClearsThePadding) {
   EXPECT_TRUE((result.values[0].tail(z.cols() - n).array() == 0).all());
 }
 
-std::string name_of(const testing::TestParamInfo<std::tuple<int, Index>>& info) {
+std::string name_of_group_eigen(const testing::TestParamInfo<std::tuple<int, Index>>& info) {
   const auto& [work_group, n] = info.param;
   return "WG" + std::to_string(work_group) + "_n" + std::to_string(n);
 }
@@ -139,29 +139,29 @@ INSTANTIATE_TEST_SUITE_P(Sizes, GroupEigenTest,
                          testing::Combine(testing::Values(64, 128, 256),
                                           testing::Values<Index>(1, 2, 3, 5, 16, 31, 64, 93, 128,
                                                                  200)),
-                         name_of);
+                         name_of_group_eigen);
 INSTANTIATE_TEST_SUITE_P(Narrow, GroupEigenTest,
                          testing::Combine(testing::Values(1, 4), testing::Values<Index>(1, 5, 31)),
-                         name_of);
+                         name_of_group_eigen);
 
 TEST(GroupEigen, GivesTheSameBitsInLocalAndInGlobalMemory) {
-  const std::vector<Matrix> matrices = every_kind(93);
+  const std::vector<Matrix> matrices = kinds_of_order(93);
   GroupEigen local(test::device()), global(test::device(), {.local_memory = 8192});
   ASSERT_LE(local.local_memory(93, true), test::device().info().local_memory);
   ASSERT_GT(global.local_memory(93, true), 8192);
 
-  const Decomposition in_local = decompose(local, matrices);
-  const Decomposition in_global = decompose(global, matrices);
+  const GroupDecomposition in_local = decompose(local, matrices);
+  const GroupDecomposition in_global = decompose(global, matrices);
 
   expect_same_bits(in_local, in_global);
 }
 
 TEST(GroupEigen, OfAMatrixDoesNotDependOnItsNeighbours) {
-  const std::vector<Matrix> matrices = every_kind(31);
-  const Decomposition together = decompose({}, matrices);
+  const std::vector<Matrix> matrices = kinds_of_order(31);
+  const GroupDecomposition together = decompose({}, matrices);
 
   for (std::size_t b = 0; b < matrices.size(); ++b) {
-    const Decomposition alone = decompose({}, {matrices[b]});
+    const GroupDecomposition alone = decompose({}, {matrices[b]});
     EXPECT_TRUE(test::same_bits(together.vectors[b], alone.vectors[0])) << b;
     EXPECT_TRUE(test::same_bits(Matrix(together.values[b]), Matrix(alone.values[0]))) << b;
   }
@@ -184,7 +184,7 @@ TEST(GroupEigen, DecomposesABatchOfMixedOrdersAsEachAlone) {
   const std::vector<Matrix> together = test::download_squares(batch, z);
 
   for (std::size_t b = 0; b < 3; ++b) {
-    const Decomposition alone = decompose(eigen, {matrices[b]});
+    const GroupDecomposition alone = decompose(eigen, {matrices[b]});
     EXPECT_TRUE(test::same_bits(together[b], alone.vectors[0])) << "segment " << b;
   }
 }
@@ -244,7 +244,7 @@ TEST(GroupEigen, KeepsWhatItHasOfSegmentsThatAreNotChosen) {
   const Buffer<std::int32_t> chosen(device, std::span<const std::int32_t>(only_second));
   std::vector<double> vectors(batch.square_size());
   GroupEigen eigen(device);
-  const Decomposition expected = decompose({}, {first, third});
+  const GroupDecomposition expected = decompose({}, {first, third});
 
   eigen(batch, a, z, d);
   a.write(std::as_const(after).storage());
@@ -268,7 +268,7 @@ TEST(GroupEigen, KeepsSmallEigenvaluesOfGradedMatricesToRelativeAccuracy) {
     factor.col(j) *= std::pow(10, -8.0 * static_cast<double>(j) / (n - 1));
   const Eigen::VectorXd sigma = test::singular_values(factor);
 
-  const Decomposition result = decompose({}, {Matrix(factor.transpose() * factor)});
+  const GroupDecomposition result = decompose({}, {Matrix(factor.transpose() * factor)});
 
   for (Index k = 0; k < n; ++k)
     EXPECT_NEAR(std::sqrt(result.values[0](k)), sigma(k),
@@ -278,7 +278,7 @@ TEST(GroupEigen, KeepsSmallEigenvaluesOfGradedMatricesToRelativeAccuracy) {
 TEST(GroupEigen, SolvesAMatrixByHand) {
   const Matrix matrix{{2, 1, 0}, {1, 3, 1}, {0, 1, 4}};  // eigenvalues 3 and 3 +- sqrt(3)
 
-  const Decomposition result = decompose({}, {matrix});
+  const GroupDecomposition result = decompose({}, {matrix});
 
   EXPECT_NEAR(result.values[0](0), 3 + std::sqrt(3.0), test::tolerance::by_hand(4));
   EXPECT_NEAR(result.values[0](1), 3, test::tolerance::by_hand(4));

@@ -13,9 +13,7 @@
 namespace moclean {
 namespace {
 
-struct Shape {
-  Index rows, columns;
-};
+using test::Shape;
 
 using test::nan;
 
@@ -183,7 +181,7 @@ TEST_P(GroupProductsTest, GramOfASegmentDependsNeitherOnItsNeighboursNorOnTheWor
   EXPECT_TRUE(test::same_bits(result, expected));
 }
 
-std::string name_of(const testing::TestParamInfo<std::tuple<int, Shape>>& info) {
+std::string name_of_group_products(const testing::TestParamInfo<std::tuple<int, Shape>>& info) {
   const auto& [work_group, shape] = info.param;
   return "WG" + std::to_string(work_group) + "_" + std::to_string(shape.rows) + "x" +
          std::to_string(shape.columns);
@@ -194,7 +192,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, GroupProductsTest,
                                           testing::Values(Shape{1, 1}, Shape{3, 5}, Shape{64, 64},
                                                           Shape{200, 93}, Shape{61, 129},
                                                           Shape{25, 93}, Shape{17, 1})),
-                         name_of);
+                         name_of_group_products);
 
 TEST(GroupProducts, RefusesAWorkGroupItHasNoTileFor) {
   EXPECT_THROW(GroupProducts<double>(test::device(), 8), ArgumentError);

@@ -18,9 +18,7 @@ struct Way {
   ProductPath products = ProductPath::own;
 };
 
-struct Shape {
-  Index rows, columns;
-};
+using test::Shape;
 
 class ProductsTest : public testing::TestWithParam<std::tuple<Way, Shape>> {
  protected:
@@ -165,7 +163,7 @@ TEST_P(ProductsTest, OfASegmentDoNotDependOnItsNeighbours) {
   EXPECT_TRUE(test::same_bits(square(together, 1), expected));
 }
 
-std::string name_of(const testing::TestParamInfo<std::tuple<Way, Shape>>& info) {
+std::string name_of_products(const testing::TestParamInfo<std::tuple<Way, Shape>>& info) {
   const auto& [way, shape] = info.param;
   return std::string(way.name) + "_" + std::to_string(shape.rows) + "x" +
          std::to_string(shape.columns);
@@ -178,7 +176,7 @@ INSTANTIATE_TEST_SUITE_P(
                                      Way{"gpu_group", KernelForm::gpu}),
                      testing::Values(Shape{1, 1}, Shape{3, 5}, Shape{64, 64}, Shape{200, 93},
                                      Shape{61, 129}, Shape{25, 93}, Shape{17, 1})),
-    name_of);
+    name_of_products);
 
 }  // namespace
 }  // namespace moclean

@@ -28,7 +28,7 @@ struct Form {
   Index columns;
 };
 
-std::string name_of(const testing::TestParamInfo<Form>& info) {
+std::string name_of_form(const testing::TestParamInfo<Form>& info) {
   return (info.param.scalar ? "Scalar" : "Vector") + std::to_string(info.param.columns);
 }
 
@@ -198,7 +198,7 @@ TEST_P(ColumnRecurrence, PreconditionerIsSolvedForTheGradient) {
 INSTANTIATE_TEST_SUITE_P(Forms, ColumnRecurrence,
                          testing::Values(Form{true, 1}, Form{true, 9}, Form{false, 1},
                                          Form{false, 9}),
-                         name_of);
+                         name_of_form);
 
 }  // namespace
 }  // namespace moclean

@@ -158,13 +158,14 @@ TEST_P(GroupSweepTest, FinishGivesTheSparsePart) {
   });
 }
 
-std::string name_of(const testing::TestParamInfo<std::tuple<int, bool>>& info) {
+std::string name_of_group_sweep(const testing::TestParamInfo<std::tuple<int, bool>>& info) {
   const auto& [work_group, ea] = info.param;
   return "WG" + std::to_string(work_group) + (ea ? "_ea" : "_ae");
 }
 
 INSTANTIATE_TEST_SUITE_P(Orders, GroupSweepTest,
-                         testing::Combine(testing::Values(64, 128, 256), testing::Bool()), name_of);
+                         testing::Combine(testing::Values(64, 128, 256), testing::Bool()),
+                         name_of_group_sweep);
 
 }  // namespace
 }  // namespace moclean

@@ -185,9 +185,7 @@ INSTANTIATE_TEST_SUITE_P(Backends, MatrixNormalContract,
                                          BackendKind::opencl_clblast, BackendKind::opencl_gpu128),
                          [](const auto& parameter) { return to_string(parameter.param); });
 
-struct Shape {
-  Index rows, columns;
-};
+using test::Shape;
 
 void expect_agreement(const std::vector<Index>& lengths, Index columns, const MatrixNormal& method,
                       BackendKind kind) {
@@ -233,7 +231,8 @@ INSTANTIATE_TEST_SUITE_P(Forms, MatrixNormalFirstSteps,
                          testing::Values(BackendKind::opencl_cpu, BackendKind::opencl_gpu64),
                          [](const auto& parameter) { return to_string(parameter.param); });
 
-std::string name_of(const testing::TestParamInfo<MatrixNormalAgreement::ParamType>& parameter) {
+std::string name_of_matrix_normal(
+    const testing::TestParamInfo<MatrixNormalAgreement::ParamType>& parameter) {
   const auto& [kind, shape] = parameter.param;
   return to_string(kind) + "_" + std::to_string(shape.rows) + "x" + std::to_string(shape.columns);
 }
@@ -244,7 +243,7 @@ INSTANTIATE_TEST_SUITE_P(Shapes, MatrixNormalAgreement,
                                                           Shape{64, 64}, Shape{200, 93},
                                                           Shape{61, 129}, Shape{25, 93},
                                                           Shape{300, 9}, Shape{530, 12})),
-                         name_of);
+                         name_of_matrix_normal);
 
 INSTANTIATE_TEST_SUITE_P(WorkGroups, MatrixNormalAgreement,
                          testing::Combine(testing::Values(BackendKind::opencl_gpu64,
@@ -252,7 +251,7 @@ INSTANTIATE_TEST_SUITE_P(WorkGroups, MatrixNormalAgreement,
                                                           BackendKind::opencl_gpu256),
                                           testing::Values(Shape{1, 1}, Shape{3, 5}, Shape{9, 6},
                                                           Shape{25, 33}, Shape{530, 12})),
-                         name_of);
+                         name_of_matrix_normal);
 
 TEST(MatrixNormalDevice, WorkGroupsOfProductsLeaveEveryBit) {
   const SegmentBatch data = batch_of({50, 12, 290}, 21);

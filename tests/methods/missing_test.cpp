@@ -109,9 +109,7 @@ TEST_P(RobustPcaWithMissing, NothingObservedIsSolvedWithoutAnIteration) {
   }
 }
 
-struct Shape {
-  Index rows, columns;
-};
+using test::Shape;
 
 class MissingAgreement
     : public testing::TestWithParam<std::tuple<BackendKind, UpdateOrder, Shape>> {};
@@ -146,7 +144,7 @@ TEST_P(MissingAgreement, DeviceAgreesWithTheReference) {
   }
 }
 
-std::string name_of(const testing::TestParamInfo<MissingAgreement::ParamType>& parameter) {
+std::string name_of_missing(const testing::TestParamInfo<MissingAgreement::ParamType>& parameter) {
   const auto& [kind, order, shape] = parameter.param;
   return to_string(kind) + "_" + to_string(order) + "_" + std::to_string(shape.rows) + "x" +
          std::to_string(shape.columns);
@@ -158,7 +156,7 @@ INSTANTIATE_TEST_SUITE_P(
                                      BackendKind::opencl_gpu64),
                      testing::Values(UpdateOrder::ae, UpdateOrder::ea),
                      testing::Values(Shape{3, 5}, Shape{64, 64}, Shape{300, 21}, Shape{25, 93})),
-    name_of);
+    name_of_missing);
 
 TEST(MissingSamples, NeedDoublePrecision) {
   OpenClBackend mixed(test::device(), {.precision = Precision::mixed});

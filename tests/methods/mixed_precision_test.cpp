@@ -11,9 +11,7 @@
 namespace moclean {
 namespace {
 
-struct Shape {
-  Index rows, columns;
-};
+using test::Shape;
 
 void expect_same_parts(const Solution& device, const Solution& reference, Index b) {
   EXPECT_LE(test::relative_difference(device.low_rank.segment(b), reference.low_rank.segment(b)),

@@ -47,8 +47,8 @@ std::string to_string(Kind kind) {
   return names[static_cast<std::size_t>(kind)];
 }
 
-constexpr auto every_kind = {Kind::tsvd,      Kind::svt_soft,   Kind::svt_hard,
-                             Kind::svt_given, Kind::completion, Kind::tslra};
+constexpr auto every_method = {Kind::tsvd,      Kind::svt_soft,   Kind::svt_hard,
+                               Kind::svt_given, Kind::completion, Kind::tslra};
 
 constexpr bool fills(Kind kind) { return kind == Kind::completion || kind == Kind::tslra; }
 
@@ -183,15 +183,13 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Combine(testing::Values(BackendKind::reference, BackendKind::reference_two_jobs,
                                      BackendKind::opencl_cpu, BackendKind::opencl_clblast,
                                      BackendKind::opencl_gpu128),
-                     testing::ValuesIn(every_kind)),
+                     testing::ValuesIn(every_method)),
     [](const auto& parameter) {
       return to_string(std::get<0>(parameter.param)) + "_" +
              to_string(std::get<1>(parameter.param));
     });
 
-struct Shape {
-  Index rows, columns;
-};
+using test::Shape;
 
 void expect_agreement(const SegmentBatch& data, const Method& method, BackendKind backend) {
   const Solution device = test::make_backend(backend)->solve(data, method);
@@ -238,7 +236,8 @@ INSTANTIATE_TEST_SUITE_P(Forms, OtherMethodFirstIterations,
                          testing::Values(BackendKind::opencl_cpu, BackendKind::opencl_gpu64),
                          [](const auto& parameter) { return to_string(parameter.param); });
 
-std::string name_of(const testing::TestParamInfo<OtherMethodAgreement::ParamType>& parameter) {
+std::string name_of_other_method(
+    const testing::TestParamInfo<OtherMethodAgreement::ParamType>& parameter) {
   const auto& [backend, kind, shape] = parameter.param;
   return to_string(backend) + "_" + to_string(kind) + "_" + std::to_string(shape.rows) + "x" +
          std::to_string(shape.columns);
@@ -247,16 +246,16 @@ std::string name_of(const testing::TestParamInfo<OtherMethodAgreement::ParamType
 INSTANTIATE_TEST_SUITE_P(
     Shapes, OtherMethodAgreement,
     testing::Combine(testing::Values(BackendKind::opencl_cpu, BackendKind::opencl_clblast),
-                     testing::ValuesIn(every_kind),
+                     testing::ValuesIn(every_method),
                      testing::Values(Shape{1, 1}, Shape{3, 5}, Shape{64, 64}, Shape{200, 93},
                                      Shape{61, 129}, Shape{25, 93}, Shape{300, 9}, Shape{1, 93})),
-    name_of);
+    name_of_other_method);
 
 INSTANTIATE_TEST_SUITE_P(
     WorkGroups, OtherMethodAgreement,
-    testing::Combine(testing::Values(BackendKind::opencl_gpu128), testing::ValuesIn(every_kind),
+    testing::Combine(testing::Values(BackendKind::opencl_gpu128), testing::ValuesIn(every_method),
                      testing::Values(Shape{3, 5}, Shape{25, 93}, Shape{300, 9})),
-    name_of);
+    name_of_other_method);
 
 // The only one of these methods whose steps over entries have a form for GPUs.
 INSTANTIATE_TEST_SUITE_P(
@@ -264,7 +263,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Combine(testing::Values(BackendKind::opencl_gpu64, BackendKind::opencl_gpu256),
                      testing::Values(Kind::tslra),
                      testing::Values(Shape{1, 1}, Shape{61, 129}, Shape{300, 9})),
-    name_of);
+    name_of_other_method);
 
 TEST(OtherMethods, AgreeOnDataOfExactlyLowRank) {
   const Matrix data = test::random_matrix(80, 4, 2) * test::random_matrix(4, 30, 3);
@@ -281,7 +280,7 @@ TEST(OtherMethods, AgreeOnDataOfExactlyLowRank) {
 }
 
 TEST(OtherMethods, AreCutToTheMemoryLimitWithoutChangingABit) {
-  for (const Kind kind : every_kind) {
+  for (const Kind kind : every_method) {
     const SegmentBatch data = data_for(kind, {50, 12, 33, 90, 41, 60}, 21);
     OpenClBackend whole(test::device()), small(test::device(), {.memory_limit = 300 * 1024});
 

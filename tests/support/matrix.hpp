@@ -12,6 +12,11 @@
 
 namespace moclean::test {
 
+/// Of a matrix, as a parameter of tests.
+struct Shape {
+  Index rows, columns;
+};
+
 /// |value - expected|_F / |expected|_F; the absolute |value - expected|_F where expected is zero.
 inline double relative_difference(const ConstMatrixRef& value, const ConstMatrixRef& expected) {
   const double norm = expected.norm();
