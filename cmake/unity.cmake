@@ -1,5 +1,5 @@
-# A sanitizer's build compiles the sources of a folder as one, in half the time. The preset `dev` compiles
-# each by itself, so that a missing include or a name used twice shows there.
+# A sanitizer's build, and in `.ci/run` that of `dev`, compile the sources of a folder as one, in half the time.
+# `scripts/test dev` compiles each by itself, so that a missing include shows there.
 option(MOCLEAN_UNITY "Compile the sources of each folder as one" OFF)
 option(MOCLEAN_UNITY_TESTS "Compile several tests of a program as one source" OFF)
 
