@@ -99,18 +99,29 @@ TEST_F(GridFile, PathsMayNameTheEnvironment) {
   expect_refused(with("${PLACE:-nowhere}", "${PLACE"), "11: take 2: file: expected } after ${");
 }
 
+// What ends a program that uses toml++ with assertions, and is assumed not to be without.
+TEST_F(GridFile, WhatTomlAssertsIsAnErrorWithItsLine) {
+  expect_refused("seeds = 2\n\n[\x1f]\x1f", "3: expected TOML");
+}
+
+TEST_F(GridFile, SeedsAreBounded) {
+  expect_refused(with("[3, 1]", "9223372036854775807"),
+                 "1: seeds: expected how many (1 to 1000000)");
+}
+
 TEST_F(GridFile, ErrorsNameLineKeyAndWhatWasExpected) {
   expect_refused("seeds = ", "1: ");
-  expect_refused("", "1: seeds: missing, expected how many (at least 1) or a list");
-  expect_refused(with("[3, 1]", "0"), "1: seeds: expected how many (at least 1)");
-  expect_refused(with("[3, 1]", "[1, -1]"), "1: seeds: expected how many (at least 1)");
+  expect_refused("", "1: seeds: missing, expected how many (1 to 1000000) or a list");
+  expect_refused(with("[3, 1]", "0"), "1: seeds: expected how many (1 to 1000000)");
+  expect_refused(with("[3, 1]", "[1, -1]"), "1: seeds: expected how many (1 to 1000000)");
   expect_refused(with("[3, 1]", "\"two\""), "1: seeds: expected how many");
   expect_refused(with("seeds", "sedes"),
                  "1: sedes: unknown key, expected one of seeds, columns_exclude, take");
   expect_refused(with("file = \"walk.npy\"", ""), "4: take 1: file: missing, expected a text");
   expect_refused(with("\"walk.npy\"", "7"), "5: take 1: file: expected a text, found 7");
   expect_refused(with("2:8", "8:2"), "6: take 1: frames: expected \"A:B\" with A < B");
-  expect_refused(with("rate = 60", "rate = -1"), "7: take 1: rate: expected a number above 0");
+  expect_refused(with("rate = 60", "rate = -1"),
+                 "7: take 1: rate: expected a number from 1e-06 to 1000000");
   expect_refused(with("[\"Toe\"]", "\"Toe\""), "8: take 1: columns_exclude: expected a list");
   expect_refused(with("= true", "= 1"), "13: take 2: optional: expected true or false, found 1");
   expect_refused(with("optional", "options"), "13: take 2: options: unknown key, expected one of");
@@ -150,7 +161,7 @@ TEST_F(GridFile, TakesAreThinnedAfterTheyAreCut) {
   EXPECT_EQ(thinned.columns.size(), 93U);
   for (const char* wrong : {"0", "1.5", "\"2\""})
     expect_refused(with("rate = 60", std::string("thin = ") + wrong),
-                   "7: take 1: thin: expected a whole number of at least 1");
+                   "7: take 1: thin: expected a whole number of 1 to 1000000");
 }
 
 TEST_F(GridFile, TakesThatCannotServeAreRefused) {
