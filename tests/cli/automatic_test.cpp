@@ -47,7 +47,7 @@ TEST_F(Auto, IsTheDefaultAndAgreesWithTheReference) {
 
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(record()["method"]["specification"],
-            "auto:window=2000,overlap=100,body=on,reject=auto,smooth=on");
+            "auto:window=2000,overlap=100,body=on,reject=auto,smooth=on,confidence=on");
   EXPECT_EQ(record()["method"]["reject"], "auto");
   EXPECT_EQ(record()["method"]["smooth"], "on");
   const Matrix clean = read_recording(output_).samples;
