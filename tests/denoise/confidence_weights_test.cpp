@@ -14,7 +14,7 @@ namespace {
 
 using test::nan;
 
-Recording take_of(const Matrix& confidence) {
+Recording sure_take(const Matrix& confidence) {
   return {.samples = Matrix::Zero(confidence.rows(), confidence.cols()),
           .columns = default_column_names(confidence.cols()),
           .unit = "",
@@ -28,7 +28,7 @@ TEST(ConfidenceWeights, AreSharesOfTheSurest) {
   confidence(5, 0) = 0.001;
   confidence(6, 0) = nan;
 
-  const Matrix weights = confidence_weights(take_of(confidence));
+  const Matrix weights = confidence_weights(sure_take(confidence));
 
   EXPECT_EQ(weights(0, 0), 1);
   EXPECT_DOUBLE_EQ(weights(3, 0), 0.5);  // samples without noise show nothing
@@ -38,13 +38,13 @@ TEST(ConfidenceWeights, AreSharesOfTheSurest) {
 }
 
 TEST(ConfidenceWeights, AreNoneWhereAllAreAsSure) {
-  EXPECT_EQ(confidence_weights(take_of(Matrix::Constant(9, 3, 0.7))).size(), 0);
-  EXPECT_EQ(confidence_weights(take_of(Matrix::Constant(9, 3, nan))).size(), 0);
-  EXPECT_EQ(confidence_weights(take_of(Matrix(0, 0))).size(), 0);
+  EXPECT_EQ(confidence_weights(sure_take(Matrix::Constant(9, 3, 0.7))).size(), 0);
+  EXPECT_EQ(confidence_weights(sure_take(Matrix::Constant(9, 3, nan))).size(), 0);
+  EXPECT_EQ(confidence_weights(sure_take(Matrix(0, 0))).size(), 0);
 }
 
 TEST(ConfidenceWeights, DoNotLookAtMissingSamples) {
-  Recording take = take_of(Matrix::Constant(10, 1, 0.5));
+  Recording take = sure_take(Matrix::Constant(10, 1, 0.5));
   take.confidence.topRows(4).setConstant(100);
   take.samples.topRows(4).setConstant(nan);
 
@@ -56,7 +56,7 @@ Recording noisy_walk(const Matrix& confidence, double power, double deviation) {
   const Matrix truth = test::synthetic_walk(confidence.rows()).samples.leftCols(confidence.cols());
   const Matrix noise = test::random_matrix(confidence.rows(), confidence.cols(), 3).array() *
                        confidence.array().pow(-power / 2);
-  Recording take = take_of(confidence);
+  Recording take = sure_take(confidence);
   take.samples = truth + deviation * noise;
   return take;
 }

@@ -13,7 +13,7 @@ namespace {
 constexpr double surest = 0.95;  // quantile of the confidences that counts as 1
 constexpr double least_weight = 0.05;
 constexpr std::array<double, 5> class_ends = {1. / 16, 1. / 8, 1. / 4, 1. / 2, 3. / 4};
-constexpr std::array<double, 5> difference = {1, -4, 6, -4, 1};
+constexpr std::array<double, 5> fourth_difference = {1, -4, 6, -4, 1};
 constexpr std::size_t fewest = 8;  // of a class or a column that is looked at
 // Of the logarithm of a median square, times the number it is of; twice that of independent ones.
 constexpr double variance_of_median = 11;
@@ -55,7 +55,7 @@ Squares squares_of(const Eigen::VectorXd& x, const Eigen::VectorXd& confidence, 
   for (Index i = 2; i + 2 < x.size(); ++i) {
     double sum = 0, expected = 0;
     for (Index k = 0; k < 5; ++k) {
-      const double factor = difference[static_cast<std::size_t>(k)];
+      const double factor = fourth_difference[static_cast<std::size_t>(k)];
       sum += factor * x(i + k - 2);
       expected += factor * factor * variance(i + k - 2);
     }
