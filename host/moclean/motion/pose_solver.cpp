@@ -91,7 +91,8 @@ void PoseSolver::solve(const double* positions, const double* current, double* c
   aim();
   double damping = least_damping, best = distance();
   bool is_smooth = true;  // the last step lessened the distance: steps may be bolder at once
-  for (int step = 0; step < most_steps && damping <= most_damping; ++step) {
+  const double none = unchanged * unchanged * size_ * size_ * static_cast<double>(links_.size());
+  for (int step = 0; step < most_steps && damping <= most_damping && best > none; ++step) {
     keep(kept_);
     const double turned = take_step(damping);
     const double now = distance();
