@@ -9,7 +9,7 @@ install(TARGETS moclean EXPORT moclean-targets ARCHIVE DESTINATION ${CMAKE_INSTA
 # tools behind the readers, the text of the kernels.
 set(internal_headers
     "methods/[a-z_]+/(reference|opencl)[a-z_]*" "solve/(reference_svd|opencl/(stacked_rows|transfer))"
-    "formats/(text_scanner|plain_number|row_collector|frame_rate|extension|text_lines|text_encoding|table_[a-z]+|column_names|column_roles|new_table|trc_text|bone_finder|bvh_motion|channel_text|skeleton_positions|npy_header|array_columns|zip_archive|missing_marks|c3d_header|c3d_samples|c3d_write|written_text)" "filter/observed"
+    "formats/(text_scanner|plain_number|row_collector|frame_rate|extension|text_lines|text_encoding|table_[a-z]+|column_names|column_roles|new_table|trc_text|bone_finder|bvh_motion|channel_text|skeleton_positions|npy_header|array_columns|zip_archive|missing_marks|confidence|write_whole|c3d_header|c3d_samples|c3d_write|written_text)" "filter/observed"
     "metric/same_shape" "experiment/toml_[a-z]+" "report/(assets|figures|quantised)"
     "run/(batch_rules|busy_clock|byte_size|memory_budget|result_writer|run_log|take_batch|take_page|take_reader|work_queue)")
 list(JOIN internal_headers "|" internal_headers)

@@ -16,6 +16,7 @@
 #include "moclean/core/large_memory.hpp"
 #include "moclean/formats/temporary_name.hpp"
 #include "moclean/formats/unfinished.hpp"
+#include "moclean/formats/write_whole.hpp"
 
 namespace moclean {
 namespace {
@@ -202,14 +203,7 @@ void AtomicFile::fail(int error) const {
 void AtomicFile::write(std::string_view bytes) {
   std::optional<OutsideWait> wait;
   if (temporary_.empty()) wait.emplace();
-  while (!bytes.empty()) {
-    constexpr std::size_t most = std::size_t{1} << 30;
-    const ssize_t some = ::write(descriptor_, bytes.data(), std::min(bytes.size(), most));
-    if (some >= 0)
-      bytes.remove_prefix(static_cast<std::size_t>(some));
-    else if (errno != EINTR)
-      fail(errno);
-  }
+  if (const int error = write_whole(descriptor_, bytes); error != 0) fail(error);
 }
 
 void AtomicFile::close() {

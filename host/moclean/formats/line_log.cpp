@@ -9,6 +9,7 @@
 
 #include "moclean/core/error.hpp"
 #include "moclean/formats/file.hpp"
+#include "moclean/formats/write_whole.hpp"
 
 namespace moclean {
 
@@ -23,7 +24,7 @@ LineLog::LineLog(std::filesystem::path file) : file_(std::move(file)) {
     if (error) throw FileError(file_, "cannot be written: " + error.message());
   }
   descriptor_ = open(file_.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) fail();
+  if (descriptor_ < 0) fail(errno);
 }
 
 LineLog::~LineLog() {
@@ -35,18 +36,12 @@ void LineLog::append(std::string_view line) {
   whole += line;
   whole += '\n';
   broken_ = true;
-  for (std::string_view rest = whole; !rest.empty();) {
-    const ssize_t some = write(descriptor_, rest.data(), rest.size());
-    if (some >= 0)
-      rest.remove_prefix(static_cast<std::size_t>(some));
-    else if (errno != EINTR)
-      fail();
-  }
+  if (const int error = write_whole(descriptor_, whole); error != 0) fail(error);
   broken_ = false;
 }
 
-void LineLog::fail() const {
-  throw FileError(file_, "cannot be written: " + std::generic_category().message(errno));
+void LineLog::fail(int error) const {
+  throw FileError(file_, "cannot be written: " + std::generic_category().message(error));
 }
 
 }  // namespace moclean

@@ -30,7 +30,7 @@ class LineLog {
   void append(std::string_view line);
 
  private:
-  [[noreturn]] void fail() const;
+  [[noreturn]] void fail(int error) const;
 
   std::filesystem::path file_;
   std::vector<std::string> found_;
