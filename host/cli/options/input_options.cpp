@@ -9,14 +9,12 @@
 #include <fmt/format.h>
 
 #include "moclean/core/error.hpp"
+#include "moclean/formats/frame_rate.hpp"
 
 #include "cli/options/checks.hpp"
 
 namespace moclean::cli {
 namespace {
-
-// Of what moves, in Hz: a frame in ten days, a million in a second.
-constexpr double least_rate = 1e-6, most_rate = 1e6;
 
 std::optional<Index> parse_frame(std::string_view text, const std::string& problem) {
   if (text.empty()) return std::nullopt;
@@ -58,7 +56,7 @@ void add_frames_option(CLI::App& command, FrameRange& frames, const std::string&
 void add_file_options(CLI::App& command, double& rate, std::filesystem::path& skeleton) {
   command.add_option("--rate", rate, "Frame rate of files that state none")
       ->type_name("HZ")
-      ->check(number_between(least_rate, most_rate));
+      ->check(number_between(least_frame_rate, most_frame_rate));
   command
       .add_option("--skeleton", skeleton,
                   "Skeleton of .amc files; otherwise the .asf beside them that fits their name")

@@ -41,9 +41,6 @@ class FinishedCount {
   Progress progress_;
 };
 
-/// Largest magnitude of an entry the backends accept: sums of its squares stay finite.
-inline constexpr double largest_entry = 1e140;
-
 /// Throws ShapeError naming segment, row and column (from 0) of the first entry that is NaN,
 /// infinite or larger than `largest_entry`.
 void require_finite(const SegmentBatch& data);

@@ -9,6 +9,7 @@
 #include "moclean/core/usable.hpp"
 #include "moclean/experiment/toml_section.hpp"
 #include "moclean/formats/file.hpp"
+#include "moclean/formats/frame_rate.hpp"
 #include "moclean/formats/read_write.hpp"
 
 namespace moclean {
@@ -17,7 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::int64_t most_thinning = 1'000'000;
-constexpr double least_rate = 1e-6, most_rate = 1e6;  // Hz, as of --rate
 
 // The path with ${NAME} and ${NAME:-otherwise} replaced.
 std::string expanded(const TomlSection& section, std::string_view key, std::string_view path,
@@ -66,7 +66,7 @@ GridTake take_of(const TomlSection& section, const fs::path& config,
   }
   take.thin = section.count("thin", most_thinning);
   take.optional = section.flag("optional");
-  take.rate = section.number("rate", least_rate, most_rate);
+  take.rate = section.number("rate", least_frame_rate, most_frame_rate);
   if (section.has("skeleton")) take.skeleton = path_of(section, "skeleton", config, environment);
   take.excluded = excluded;
   for (std::string& fragment : section.texts("columns_exclude"))

@@ -4,6 +4,10 @@
 
 namespace moclean {
 
+/// What may be said of a rate, in Hz: of what moves, from a frame in ten days to a million in a
+/// second.
+inline constexpr double least_frame_rate = 1e-6, most_frame_rate = 1e6;
+
 /// Frames per second from seconds per frame, which files print with few digits.
 ///
 /// 1 / seconds, rounded to a whole number when that is within 5e-4 of it: .0083333 means 120 Hz and

@@ -27,11 +27,10 @@ std::string write(const Model& model) {
 
 // No method takes what is larger, and squares of it are no numbers.
 void require_sensible(const Noise& noise, const Matrix& samples) {
-  constexpr double largest = 1e140;
-  if (const auto place = first_unusable(samples, true, largest))
+  if (const auto place = first_unusable(samples, true, largest_entry))
     throw ArgumentError(fmt::format("{}: makes {:.3g} of a sample in frame {}, expected at most {}",
                                     to_string(noise), samples(place->frame, place->column),
-                                    place->frame, largest));
+                                    place->frame, largest_entry));
 }
 
 }  // namespace

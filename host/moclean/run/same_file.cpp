@@ -14,7 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_none(const fs::path& file) { return file.empty() || file == "-"; }
+// `-` is none, also where a file is called so.
+std::string key_of(const NamedFile& named) { return named.file == "-" ? "" : file_key(named.file); }
 
 }  // namespace
 
@@ -25,7 +26,7 @@ std::string file_key(const fs::path& file) {
     return fmt::format("{}:{}", facts.st_dev, facts.st_ino);
   }
   const auto place = place_of_new(file);
-  if (is_none(file) || !place) return "";
+  if (file.empty() || file == "-" || !place) return "";
   std::error_code error;
   const fs::path whole = fs::absolute(*place, error);
   const fs::path folder = fs::weakly_canonical(whole.parent_path(), error);
@@ -34,10 +35,9 @@ std::string file_key(const fs::path& file) {
 
 void require_apart(std::span<const NamedFile> read, std::span<const NamedFile> written) {
   std::map<std::string, const NamedFile*> inputs;
-  for (const NamedFile& input : read)
-    if (!is_none(input.file)) inputs.emplace(file_key(input.file), &input);
+  for (const NamedFile& input : read) inputs.emplace(key_of(input), &input);
   for (const NamedFile& output : written) {
-    const std::string key = is_none(output.file) ? "" : file_key(output.file);
+    const std::string key = key_of(output);
     if (const auto same = inputs.find(key); !key.empty() && same != inputs.end())
       throw ArgumentError(fmt::format("{} {} is the file that {} names, which it would replace",
                                       output.option, output.file.string(), same->second->option));
@@ -48,7 +48,7 @@ void require_apart(std::span<const NamedFile> read, std::span<const NamedFile> w
 void require_apart(std::span<const NamedFile> written) {
   std::map<std::string, const NamedFile*> outputs;
   for (const NamedFile& output : written) {
-    const std::string key = is_none(output.file) ? "" : file_key(output.file);
+    const std::string key = key_of(output);
     if (key.empty()) continue;
     const auto [other, is_new] = outputs.emplace(key, &output);
     if (!is_new)
