@@ -6,7 +6,6 @@
 //   taskset -c 0,1 build/bench/bench/bvh_bench --benchmark_repetitions=5
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <numbers>
@@ -18,17 +17,14 @@
 
 #include "moclean/formats/read_write.hpp"
 
+#include "support/file_bench.hpp"
+
 namespace moclean::bench {
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr Index frames = 10000;
-
-fs::path shared_data() {
-  const char* place = std::getenv("MOCLEAN_DATA");
-  return place ? fs::path(place) : fs::path(MOCLEAN_SOURCE_DIR).parent_path() / "shared" / "data";
-}
 
 std::vector<fs::path> takes() {
   std::vector<fs::path> found;
@@ -148,11 +144,5 @@ void add_all() {
 }  // namespace moclean::bench
 
 int main(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  moclean::bench::add_all();
-  benchmark::AddCustomContext("revision", MOCLEAN_REVISION);
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return 0;
+  return moclean::bench::run_benchmarks(argc, argv, moclean::bench::add_all);
 }

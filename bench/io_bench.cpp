@@ -4,7 +4,6 @@
 // of everything that has to do with text is in bytes of text, so that stages of one file compare;
 // forward kinematics says microseconds per frame, too. For quotable figures:
 //   build/bench/io_bench --benchmark_repetitions=5 --benchmark_report_aggregates_only=true
-#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <random>
@@ -19,15 +18,12 @@
 #include "moclean/formats/npy.hpp"
 #include "moclean/formats/read_write.hpp"
 
+#include "support/file_bench.hpp"
+
 namespace moclean::bench {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path shared_data() {
-  const char* place = std::getenv("MOCLEAN_DATA");
-  return place ? fs::path(place) : fs::path(MOCLEAN_SOURCE_DIR).parent_path() / "shared" / "data";
-}
 
 std::vector<fs::path> takes() {
   std::vector<fs::path> found;
@@ -150,11 +146,5 @@ void add_all() {
 }  // namespace moclean::bench
 
 int main(int argc, char** argv) {
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  moclean::bench::add_all();
-  benchmark::AddCustomContext("revision", MOCLEAN_REVISION);
-  benchmark::RunSpecifiedBenchmarks();
-  benchmark::Shutdown();
-  return 0;
+  return moclean::bench::run_benchmarks(argc, argv, moclean::bench::add_all);
 }
