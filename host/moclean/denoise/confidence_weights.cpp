@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 #include "moclean/core/order_statistics.hpp"
@@ -43,39 +44,50 @@ std::size_t class_of(double confidence) {
   return static_cast<std::size_t>(end - class_ends.begin());
 }
 
-// Squares of fourth differences of a column, over the variance that an exponent expects of them.
-struct Squares {
-  std::vector<double> values;
-  std::vector<std::size_t> classes;  // of the sample in the middle
+// Fourth differences of a column where all five samples are observed.
+struct Differences {
+  std::vector<Index> frames;  // of the sample in the middle
+  std::vector<double> squares;
 };
 
-Squares squares_of(const Eigen::VectorXd& x, const Eigen::VectorXd& confidence, double exponent) {
-  const Eigen::VectorXd variance = confidence.array().pow(-exponent);
-  Squares squares;
+Differences differences_of(const Eigen::VectorXd& x) {
+  Differences found;
   for (Index i = 2; i + 2 < x.size(); ++i) {
-    double sum = 0, expected = 0;
-    for (Index k = 0; k < 5; ++k) {
-      const double factor = fourth_difference[static_cast<std::size_t>(k)];
-      sum += factor * x(i + k - 2);
-      expected += factor * factor * variance(i + k - 2);
-    }
+    double sum = 0;
+    for (Index k = 0; k < 5; ++k)
+      sum += fourth_difference[static_cast<std::size_t>(k)] * x(i + k - 2);
     if (std::isnan(sum)) continue;
-    squares.values.push_back(sum * sum / expected);
-    squares.classes.push_back(class_of(confidence(i)));
+    found.frames.push_back(i);
+    found.squares.push_back(sum * sum);
   }
-  return squares;
+  return found;
+}
+
+// Of the fourth difference around a frame of noise of these variances.
+double variance_around(Index frame, const Eigen::VectorXd& variances) {
+  double sum = 0;
+  for (Index k = 0; k < 5; ++k) {
+    const double factor = fourth_difference[static_cast<std::size_t>(k)];
+    sum += factor * factor * variances(frame + k - 2);
+  }
+  return sum;
 }
 
 // Minus the logarithm of the evidence for an exponent, but for a constant.
-double misfit(const Matrix& samples, const Matrix& confidence, double exponent) {
+double misfit(const std::vector<Differences>& columns, const Matrix& confidence, double exponent) {
   std::array<std::vector<double>, class_ends.size() + 1> classes;
-  for (Index j = 0; j < samples.cols(); ++j) {
-    Squares squares = squares_of(samples.col(j), confidence.col(j), exponent);
-    if (squares.values.size() < fewest) continue;
-    std::vector<double> sorted = squares.values;
+  for (std::size_t j = 0; j < columns.size(); ++j) {
+    const Differences& own = columns[j];
+    if (own.frames.size() < fewest) continue;
+    const auto certainty = confidence.col(static_cast<Index>(j)).array();
+    const Eigen::VectorXd variances = certainty.pow(-exponent);
+    std::vector<double> ratios(own.squares);
+    for (std::size_t k = 0; k < ratios.size(); ++k)
+      ratios[k] /= variance_around(own.frames[k], variances);
+    std::vector<double> sorted = ratios;
     const double unit = median(sorted);
-    for (std::size_t k = 0; unit > 0 && k < squares.values.size(); ++k)
-      classes[squares.classes[k]].push_back(squares.values[k] / unit);
+    for (std::size_t k = 0; unit > 0 && k < ratios.size(); ++k)
+      classes[class_of(certainty(own.frames[k]))].push_back(ratios[k] / unit);
   }
   double count = 0, sum = 0, squares = 0;
   for (std::vector<double>& values : classes) {
@@ -91,10 +103,12 @@ double misfit(const Matrix& samples, const Matrix& confidence, double exponent) 
 }
 
 double exponent_of(const Matrix& samples, const Matrix& confidence) {
-  double best = 1, least = misfit(samples, confidence, 1);
-  for (int k = steps - 1; k >= 0; --k) {
+  std::vector<Differences> columns;
+  for (Index j = 0; j < samples.cols(); ++j) columns.push_back(differences_of(samples.col(j)));
+  double best = 1, least = std::numeric_limits<double>::infinity();
+  for (int k = steps; k >= 0; --k) {
     const double exponent = static_cast<double>(k) / steps;
-    const double own = misfit(samples, confidence, exponent);
+    const double own = misfit(columns, confidence, exponent);
     if (own < least) {
       least = own;
       best = exponent;
