@@ -6,7 +6,8 @@ namespace moclean {
 namespace {
 
 TEST(Printable, LeavesTextAsItIs) {
-  EXPECT_EQ(printable("take 'Hüfte' 手 😀\nnext line \\x"), "take 'Hüfte' 手 😀\nnext line \\x");
+  const std::string text = "take 'Hüfte' 手 😀\nnext line \\x";
+  EXPECT_EQ(printable(text), text);
 }
 
 TEST(Printable, EscapesWhatControlsATerminal) {
