@@ -74,6 +74,29 @@ TEST(MatrixCompletion, SplitsWhatWasObserved) {
               test::tolerance::by_hand(1));
 }
 
+TEST(MatrixCompletion, StepsThatLetTheResidualGrowAreShortened) {
+  EXPECT_EQ(next_step(5, 0.5, 1), 5);
+  EXPECT_EQ(next_step(5, 1.1, 1), 1.9);
+  EXPECT_EQ(next_step(1.2, 1.1, 1), 1.2);
+}
+
+// delta is 648, 64 and 2.4: with it Y grows beyond all numbers, or swings for ever.
+TEST(MatrixCompletion, ConvergesHoweverLittleIsSeen) {
+  const Matrix whole = test::random_matrix(60, 9, 1);
+  Matrix one = Matrix::Constant(60, 9, nan), frame = one, chequered = whole;
+  one(30, 4) = 5;
+  frame.row(0) = whole.row(0);
+  for (Index i = 0; i < chequered.size(); i += 2) chequered.data()[i] = nan;
+
+  for (const Matrix& seen : {one, frame, chequered}) {
+    const auto solution = reference::solve(seen, {});
+
+    EXPECT_TRUE(solution.outcome.converged);
+    EXPECT_TRUE(solution.low_rank.allFinite());
+    EXPECT_LE(solution.outcome.residual, MatrixCompletion{}.tolerance);
+  }
+}
+
 TEST(MatrixCompletion, TakesNoIterationForNothing) {
   for (const Matrix& data : {Matrix(Matrix::Zero(3, 4)), Matrix(Matrix::Constant(3, 4, nan))}) {
     const auto solution = reference::solve(data, {});

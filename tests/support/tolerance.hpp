@@ -114,6 +114,10 @@ inline double printed_digits() { return 5e-6; }
 /// their condition (up to 1e6) and carried from step to step; 1e-6 is what the project asks.
 inline double backends_smoothing() { return 1e-6; }
 
+/// Largest difference, relative to the take's samples, of results that differ in rounding only:
+/// another unit, origin, order of joints or direction of time. What the project asks of `auto`.
+inline double metamorphic() { return 1e-9; }
+
 /// Relative difference of two formulas for one number (a Schur complement and a block of the
 /// inverse, factors built row by row and a dense matrix) in matrices of condition 1e5, the ridge of
 /// matrix-normal smoothing.

@@ -68,6 +68,7 @@ std::vector<Denoised> ChainDenoiser::solve(const Step& step, std::span<const Rec
 std::vector<Denoised> ChainDenoiser::denoise(std::span<const Recording> takes,
                                              const Monitor& monitor) {
   if (chain_.size() == 1 && needs_backend(chain_)) return solve(chain_.front(), takes, monitor);
+  require_usable(takes, accepts_missing(chain_));
   Index finished = 0, planned = 0;  // segments of steps that are done, and of those to come
   for (const Step& step : chain_) planned += segments_of(step, takes);
   Monitor part{.stop = monitor.stop};

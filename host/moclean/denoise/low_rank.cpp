@@ -4,6 +4,9 @@
 #include <map>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "moclean/core/error.hpp"
 #include "moclean/core/parallel.hpp"
 #include "moclean/denoise/cheapest_plans.hpp"
 #include "moclean/denoise/unobserved.hpp"
@@ -92,9 +95,21 @@ std::uint64_t copies_held(const Segmentation& segmentation) {
   return copies;
 }
 
+std::string too_small(const Matrix& samples, std::string_view name) {
+  constexpr double least = 1e-140;
+  const double most = samples.array().isNaN().select(0, samples).cwiseAbs().maxCoeff();
+  if (most == 0 || most >= least) return {};
+  return fmt::format(
+      "has no sample larger than {:.3g}; {} needs some of {} at least: state them in another unit",
+      most, name, least);
+}
+
 std::vector<Denoised> LowRankDenoiser::denoise(std::span<const Recording> takes,
                                                const Monitor& monitor) {
   require_usable(takes, accepts_missing(method_));
+  for (std::size_t t = 0; t < takes.size(); ++t)
+    if (const std::string why = too_small(takes[t].samples, "this method"); !why.empty())
+      throw TakeError(t, why);
   std::vector<Spans> spans;
   for (const SegmentPlan& one : plans_of(takes, segmentation_, method_, backend_, monitor.stop))
     spans.push_back(overlapping_spans(one, segmentation_.overlap));

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
+#include <string_view>
 
 #include "moclean/denoise/denoiser.hpp"
 #include "moclean/segment/spans.hpp"
@@ -22,6 +24,10 @@ struct Segmentation {
 
 /// The equal plan for a take of `frames` frames; an automatic one has as many segments.
 SegmentPlan plan(const Segmentation& segmentation, Index frames);
+
+/// Of samples so small that no square of theirs is a number, why a matrix method cannot work on
+/// them: it would make zeros of them. Empty of all others. `name` is the method's.
+std::string too_small(const Matrix& samples, std::string_view name);
 
 /// Copies of the samples of its takes that LowRankDenoiser has at a time, the results among them.
 std::uint64_t copies_held(const Segmentation& segmentation);

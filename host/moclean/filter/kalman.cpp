@@ -136,15 +136,14 @@ void smooth(const KalmanSmoother& filter, double frame_rate, std::span<double> c
   if (range == 0) return;  // a constant
   const auto [process, measurement] = deviations_of(filter, range);
   const double per_frame = process / (frame_rate * frame_rate);  // lengths per frame squared
-  // Squares of what is tiny or huge are no numbers: a power of two changes no digit.
   const int exponent = std::ilogb(range);
   const auto scaled = [&](double value) { return std::ldexp(value, -exponent); };
-  for (double& y : channel) y = scaled(y);
+  scale_by_power(channel, -exponent);
   if (filter.model == KalmanSmoother::Model::velocity)
     Smoother<2>(scaled(per_frame), scaled(measurement))(channel, scaled(range));
   else
     Smoother<3>(scaled(per_frame), scaled(measurement))(channel, scaled(range));
-  for (double& y : channel) y = std::ldexp(y, exponent);
+  scale_by_power(channel, exponent);
 }
 
 }  // namespace moclean

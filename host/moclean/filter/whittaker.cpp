@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "moclean/core/band_matrix.hpp"
 #include "moclean/core/error.hpp"
+#include "moclean/core/order_statistics.hpp"
 #include "moclean/filter/observed.hpp"
 
 namespace moclean {
@@ -52,24 +54,79 @@ void put(const std::vector<double>& z, std::span<double> channel) {
 constexpr double largest_lambda = 1e10;
 
 template <class Filter>
-void check_penalty(const Filter& filter) {
-  if (!(filter.lambda > 0 && filter.lambda <= largest_lambda))
+void check_penalty(const Filter& filter, double lambda) {
+  if (!(lambda > 0 && lambda <= largest_lambda))
     throw ArgumentError(fmt::format("{}: lambda is {}, expected a positive number up to {}",
-                                    Filter::name, filter.lambda, largest_lambda));
+                                    Filter::name, lambda, largest_lambda));
   if (filter.difference < 1 || filter.difference > BandMatrix::most_width)
     throw ArgumentError(
         fmt::format("{}: difference is {}, expected 1, 2 or 3", Filter::name, filter.difference));
 }
 
+struct Ranges {
+  double usual;  // of 95 % of the samples: gross errors do not stretch it
+  double whole;
+};
+
+Ranges ranges_of(std::span<const double> channel) {
+  constexpr double left_out = 0.025;
+  std::vector<double> seen;
+  std::ranges::copy_if(channel, std::back_inserter(seen), [](double y) { return !std::isnan(y); });
+  return {quantile(seen, 1 - left_out) - quantile(seen, left_out),
+          std::ranges::max(seen) - std::ranges::min(seen)};
+}
+
+// What a channel divided by 2^exponent is smoothed with, see RobustWhittaker.
+struct Penalty {
+  double lambda, delta;
+};
+
+Penalty penalty_of(const RobustWhittaker& filter, const Ranges& ranges, int exponent) {
+  constexpr double ratio = 1000,
+                   least_share = 1e-6;            // of the whole range: no more than 1e9 / range
+  constexpr double least = 1e-200, most = 1e200;  // leaves room for their products
+  const double range = std::max(std::ldexp(ranges.usual, -exponent),
+                                least_share * std::ldexp(ranges.whole, -exponent));
+  const auto given = [&](const std::optional<double>& value, int power, double otherwise) {
+    return value ? std::clamp(std::ldexp(*value, power), least, most) : otherwise;
+  };
+  return {given(filter.lambda, exponent, ratio / range),
+          given(filter.delta, -exponent, range / ratio)};
+}
+
+// The gradient sign(z - y) + 2 lambda Delta'Delta z vanishes where (W + 2 lambda Delta'Delta) z =
+// Wy.
+void smooth(const RobustWhittaker& filter, const Penalty& penalty, std::span<double> channel) {
+  const auto order = static_cast<int>(filter.difference);
+  Weighted data = weighted(channel);
+  if (data.observed <= filter.difference) return;
+  const auto [lambda, delta] = penalty;
+  const BandMatrix band = difference_penalty(data.y.size(), order, 2 * lambda);
+  for (double& w : data.w) w *= lambda / 100;
+  std::vector<double> z = solve(band, data.w, data.y);
+  const double least_weight = lambda / largest_lambda;
+  double moved = delta;
+  for (int i = 0; i < filter.iterations && moved > delta / 1000; ++i) {
+    for (std::size_t t = 0; t < z.size(); ++t)
+      if (data.w[t] > 0)
+        data.w[t] = std::max(1 / std::max(std::abs(data.y[t] - z[t]), delta), least_weight);
+    const std::vector<double> next = solve(band, data.w, data.y);
+    moved = 0;
+    for (std::size_t t = 0; t < z.size(); ++t) moved = std::max(moved, std::abs(next[t] - z[t]));
+    z = next;
+  }
+  put(z, channel);
+}
+
 }  // namespace
 
-void check(const Whittaker& filter) { check_penalty(filter); }
+void check(const Whittaker& filter) { check_penalty(filter, filter.lambda); }
 
 void check(const RobustWhittaker& filter) {
-  check_penalty(filter);
-  if (!(filter.delta > 0 && std::isfinite(filter.delta)))
+  check_penalty(filter, filter.lambda.value_or(1));
+  if (const double delta = filter.delta.value_or(1); !(delta > 0 && std::isfinite(delta)))
     throw ArgumentError(
-        fmt::format("whittaker-l1: delta is {}, expected a positive number", filter.delta));
+        fmt::format("whittaker-l1: delta is {}, expected a positive number", delta));
   constexpr int most_iterations = 10'000;
   if (filter.iterations < 1 || filter.iterations > most_iterations)
     throw ArgumentError(fmt::format("whittaker-l1: iterations is {}, expected 1 to {}",
@@ -84,27 +141,14 @@ void smooth(const Whittaker& filter, double, std::span<double> channel) {
   put(solve(difference_penalty(data.y.size(), order, filter.lambda), data.w, data.y), channel);
 }
 
-// The gradient sign(z - y) + 2 lambda Delta'Delta z vanishes where (W + 2 lambda Delta'Delta) z =
-// Wy.
 void smooth(const RobustWhittaker& filter, double, std::span<double> channel) {
   channel = between_ends(channel);
-  const auto order = static_cast<int>(filter.difference);
-  Weighted data = weighted(channel);
-  if (data.observed <= filter.difference) return;
-  const BandMatrix band = difference_penalty(data.y.size(), order, 2 * filter.lambda);
-  std::vector<double> z = solve(band, data.w, data.y);
-  const double least_weight = filter.lambda / largest_lambda;
-  double moved = filter.delta;
-  for (int i = 0; i < filter.iterations && moved > filter.delta / 1000; ++i) {
-    for (std::size_t t = 0; t < z.size(); ++t)
-      if (data.w[t] > 0)
-        data.w[t] = std::max(1 / std::max(std::abs(data.y[t] - z[t]), filter.delta), least_weight);
-    const std::vector<double> next = solve(band, data.w, data.y);
-    moved = 0;
-    for (std::size_t t = 0; t < z.size(); ++t) moved = std::max(moved, std::abs(next[t] - z[t]));
-    z = next;
-  }
-  put(z, channel);
+  const Ranges ranges = channel.empty() ? Ranges{} : ranges_of(channel);
+  if (ranges.whole == 0) return;  // a constant
+  const int exponent = std::ilogb(ranges.whole);
+  scale_by_power(channel, -exponent);
+  smooth(filter, penalty_of(filter, ranges, exponent), channel);
+  scale_by_power(channel, exponent);
 }
 
 }  // namespace moclean

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -33,15 +34,19 @@ struct Whittaker {
 /// minimise  sum |y - z| + lambda sum (Delta z)^2
 ///
 /// which gross errors do not pull: a sample's pull is 1 however far away it is. By reweighted least
-/// squares from the curve of weight 1 on: weights 1 / max(|y - z|, delta), so that errors
-/// below `delta` are measured by their square (Huber), until no sample moves by more than
+/// squares, from the curve of weights lambda/100 on: weights 1 / max(|y - z|, delta), so that
+/// errors below `delta` are measured by their square (Huber), until no sample moves by more than
 /// delta/1000, or `iterations` times. No weight is below lambda / 1e10, beyond which rounding would
 /// have the say: that limits how far away an error can be to pull no more than others.
+///
+/// Both parameters have a unit. Where they are not given they follow the channel, so that its unit
+/// does not matter: lambda is 1000 over the range of 95 % of its samples (or a millionth of that of
+/// all, if that is more), delta a thousandth of it.
 struct RobustWhittaker {
-  double lambda = 100;   ///< above 0, at most 1e10; has the unit 1/length
-  Index difference = 2;  ///< 1, 2 or 3
-  double delta = 0.01;   ///< in the unit of the clip, above 0
-  int iterations = 100;  ///< 1 to 10000
+  std::optional<double> lambda = {};  ///< above 0, at most 1e10, one over the unit of the clip
+  Index difference = 2;               ///< 1, 2 or 3
+  std::optional<double> delta = {};   ///< above 0, in the unit of the clip
+  int iterations = 100;               ///< 1 to 10000
 
   bool operator==(const RobustWhittaker&) const = default;
 

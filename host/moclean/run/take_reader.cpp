@@ -29,18 +29,12 @@ Index segments_of(const Segmentation& segmentation, const Recording& clip) {
   return static_cast<Index>(plan(segmentation, clip.frames()).size()) - 1;
 }
 
-// Matrix methods square samples: of all squares 0 the result would be 0, too.
 void require_size(const Recording& recording, const fs::path& file, const Chain& chain) {
-  constexpr double least = 1e-140;
   const auto squares = [](const Step& step) { return std::holds_alternative<LowRank>(step); };
   const auto step = std::ranges::find_if(chain, squares);
   if (step == chain.end()) return;
-  const double most =
-      recording.samples.array().isNaN().select(0, recording.samples).cwiseAbs().maxCoeff();
-  if (most > 0 && most < least)
-    throw FileError(file, fmt::format("has no sample larger than {:.3g}; {} needs some of {} at "
-                                      "least: state them in another unit",
-                                      most, name_of(*step), least));
+  if (const std::string why = too_small(recording.samples, name_of(*step)); !why.empty())
+    throw FileError(file, why);
 }
 
 }  // namespace

@@ -15,15 +15,20 @@ namespace moclean {
 ///   X = U max(sigma - tau, 0) V' with Y = U sigma V', Y = Y + delta P(D - X)
 /// until |P(D - X)|_F <= tolerance |P(D)|_F. A = X, which fills the gaps; E = P(D - X).
 ///
+/// The paper's delta is for entries missing at random; where most are missing by some rule it is
+/// too long, and Y grows beyond all bounds. The iteration is gradient ascent on a dual function
+/// whose gradient P(D - X) is nonexpansive in Y, so that no delta below 2 lets |P(D - X)|_F grow:
+/// where it has grown, delta is 1.9 from then on, and the iteration converges.
+///
 /// The paper's tau is 5 sqrt(m n) for entries of size one, that is threshold = 5; a smaller one
 /// takes fewer iterations and fills gaps worse below about 1. Sparse errors are taken for motion:
 /// remove them first (`hampel+completion`). A column that was never observed comes out as zero.
 struct MatrixCompletion {
   static constexpr bool accepts_missing = true;
 
-  double threshold = 1;       ///< tau / |P(D)|_F, above 0
-  double step = 1.2;          ///< above 0; below 2 it converges for every matrix
-  double tolerance = 3e-3;    ///< on |P(D - X)|_F / |P(D)|_F, above 0
+  double threshold = 1;       ///< tau / |P(D)|_F, above 0, at most 1e6
+  double step = 1.2;          ///< above 0, at most 1e6
+  double tolerance = 3e-3;    ///< on |P(D - X)|_F / |P(D)|_F, above 0, at most 1e6
   int max_iterations = 2000;  ///< >= 1
 
   bool operator==(const MatrixCompletion&) const = default;
@@ -51,6 +56,9 @@ struct CompletionStart {
   /// First multiple of delta P(D), given |P(D)|_2: what Y starts as.
   double kick(double norm_2) const;
 };
+
+/// The delta of the next iteration, by |P(D - X)|_F after and before the last one.
+double next_step(double delta, double after, double before);
 
 CompletionStart start_completion(const ConstMatrixRef& data, const MatrixCompletion& method);
 

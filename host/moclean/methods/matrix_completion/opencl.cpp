@@ -42,7 +42,7 @@ struct MatrixCompletionSolver::Run {
   Batch batch;
   MemoryLayout layout;
   Memory m;
-  std::vector<double> squares, taus;
+  std::vector<double> squares, taus, deltas;
   std::vector<SegmentOutcome> outcomes;
   std::vector<CompletionStart> starts;
 };
@@ -61,15 +61,14 @@ std::uint64_t MatrixCompletionSolver::memory_of(Index rows, Index columns,
 // D and the observed entries, and Y = ceil(tau / (delta |P(D)|_2)) delta P(D).
 void MatrixCompletionSolver::start(Run& run) {
   std::vector<Index> first_rows = {0};
-  std::vector<double> deltas;
   std::vector<std::int32_t> active;
   for (std::size_t b = 0; b < run.starts.size(); ++b) {
     const CompletionStart& start = run.starts[b];
     first_rows.push_back(first_rows.back() + start.data.rows());
-    deltas.push_back(start.delta);
+    run.deltas.push_back(start.delta);
     if (start.norm > 0) active.push_back(static_cast<std::int32_t>(b));
   }
-  run.m.deltas.write(deltas);
+  run.m.deltas.write(run.deltas);
   SegmentBatch host(run.starts.front().data.cols(), first_rows);
   const auto& starts = run.starts;
   upload(
@@ -85,7 +84,7 @@ void MatrixCompletionSolver::start(Run& run) {
   upload(host, kicked, run.m.Y);
 }
 
-// Y = Y + delta P(D - X); segments that have converged leave the batch.
+// Y = Y + delta P(D - X), and what delta is next; segments that have converged leave the batch.
 void MatrixCompletionSolver::update(Run& run, const MatrixCompletion& method,
                                     const Finished& finished) {
   Memory& m = run.m;
@@ -93,10 +92,17 @@ void MatrixCompletionSolver::update(Run& run, const MatrixCompletion& method,
           run.batch.active_blocks(), m.D, m.observed, m.deltas, m.X, m.Y, m.partial_squares);
   m.partial_squares.read(run.squares);
   std::vector<double> residuals(run.starts.size(), 0);
+  bool shorter = false;
   for (const std::int32_t b : run.batch.active()) {
     const auto i = static_cast<std::size_t>(b);
     residuals[i] = std::sqrt(sum_of_blocks(run.batch.segment(b), run.squares)) / run.starts[i].norm;
+    const SegmentOutcome& outcome = run.outcomes[i];
+    const double before = outcome.iterations == 0 ? 1 : outcome.residual,
+                 delta = next_step(run.deltas[i], residuals[i], before);
+    shorter |= delta < run.deltas[i];
+    run.deltas[i] = delta;
   }
+  if (shorter) m.deltas.write(run.deltas);
   const Index done =
       retire(run.batch, residuals, method.tolerance, method.max_iterations, run.outcomes);
   if (done > 0) finished(done);

@@ -2,6 +2,8 @@
 // threshold, delta the step; see methods/matrix_completion/matrix_completion.hpp.
 #include "moclean/methods/matrix_completion/reference.hpp"
 
+#include <utility>
+
 #include "moclean/core/error.hpp"
 #include "moclean/solve/reference_svd.hpp"
 
@@ -16,6 +18,7 @@ CompletionSolution solve(const ConstMatrixRef& data, const MatrixCompletion& met
   outcome.converged = start.norm == 0;
   if (outcome.converged) return solution;
 
+  double delta = start.delta, before = 1;
   Eigen::MatrixXd Y = start.kick(thin_svd(start.data).sigma(0)) * start.data;
   while (!outcome.converged && outcome.iterations < method.max_iterations) {
     if (stop.stop_requested()) throw Cancelled();
@@ -24,11 +27,12 @@ CompletionSolution solve(const ConstMatrixRef& data, const MatrixCompletion& met
     const Eigen::VectorXd kept = svd.sigma.head(r).array() - start.tau;
     solution.low_rank = svd.u.leftCols(r) * kept.asDiagonal() * svd.v.leftCols(r).transpose();
     solution.sparse = start.observed.cwiseProduct(start.data - solution.low_rank);  // P(D - X)
-    Y += start.delta * solution.sparse;
+    Y += delta * solution.sparse;
     ++outcome.iterations;
     outcome.rank = static_cast<int>(r);
     outcome.residual = solution.sparse.norm() / start.norm;
     outcome.converged = outcome.residual <= method.tolerance;
+    delta = next_step(delta, outcome.residual, std::exchange(before, outcome.residual));
   }
   return solution;
 }

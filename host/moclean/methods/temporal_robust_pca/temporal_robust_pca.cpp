@@ -55,10 +55,14 @@ double deviation(const ConstMatrixRef& data, std::span<const double> coefficient
 }  // namespace
 
 void check(const TemporalRobustPca& method) {
-  require("gamma", method.gamma, method.gamma >= 0, "0 (by rule) or a positive number");
+  constexpr double most = 1e10;  // beyond, what is added to it is lost in rounding
+  require("gamma", method.gamma, method.gamma >= 0 && method.gamma <= most,
+          "0 (by rule) or a positive number up to 1e10");
   require("nu", method.nu, method.nu > 0, "a positive number");
-  require("lambda", method.lambda, method.lambda >= 0, "0 (by size) or a positive number");
-  require("lambda-scale", method.lambda_scale, method.lambda_scale > 0, "a positive number");
+  require("lambda", method.lambda, method.lambda >= 0 && method.lambda <= most,
+          "0 (by size) or a positive number up to 1e10");
+  require("lambda-scale", method.lambda_scale,
+          method.lambda_scale > 0 && method.lambda_scale <= most, "a positive number up to 1e10");
   require("rho", method.rho, method.rho > 1, "a number above 1");
   require("mu0-factor", method.mu0_factor, method.mu0_factor > 0, "a positive number");
   require("mu-max-factor", method.mu_max_factor, method.mu_max_factor >= 1, "at least 1");

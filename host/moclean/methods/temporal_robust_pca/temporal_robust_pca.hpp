@@ -23,10 +23,10 @@ namespace moclean {
 struct TemporalRobustPca {
   static constexpr bool accepts_missing = true;
 
-  double gamma = 0;            ///< >= 0; 0: penalty_of() says
-  double nu = 0.3;             ///< weight of |L|_*, > 0
-  double lambda = 0;           ///< weight of |E|_1, > 0; 0: lambda_scale / sqrt(max(rows, columns))
-  double lambda_scale = 1;     ///< > 0; used when lambda is 0
+  double gamma = 0;   ///< 0 to 1e10; 0: penalty_of() says
+  double nu = 0.3;    ///< weight of |L|_*, > 0
+  double lambda = 0;  ///< weight of |E|_1, to 1e10; 0: lambda_scale / sqrt(max(rows, columns))
+  double lambda_scale = 1;     ///< > 0, to 1e10; used when lambda is 0
   double rho = 1.1;            ///< growth of mu, > 1
   double mu0_factor = 1.25;    ///< > 0
   double mu_max_factor = 1e7;  ///< >= 1
