@@ -46,10 +46,12 @@ void open_standard_streams() {
 }
 
 // Where an exception may not pass: no memory in a function of others, say, that promises to throw
-// nothing.
+// nothing. CLBlast 1.5.3 does where the device has none.
 [[noreturn]] void end_at_once() {
   remove_unfinished();
-  constexpr std::string_view message = "moclean: cannot go on, there is not enough memory\n";
+  constexpr std::string_view message =
+      "moclean: cannot go on, there is not enough memory of the machine or, for CLBlast, of the "
+      "device\n";
   [[maybe_unused]] const ssize_t ignored = write(STDERR_FILENO, message.data(), message.size());
   _exit(static_cast<int>(ExitCode::failed));
 }

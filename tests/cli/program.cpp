@@ -155,6 +155,16 @@ Outcome Program::wait() {
   return outcome;
 }
 
+Outcome Program::wait_at_most(std::chrono::milliseconds time) {
+  const auto end = std::chrono::steady_clock::now() + time;
+  siginfo_t state{};
+  while (waitid(P_PID, static_cast<id_t>(process_), &state, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+         state.si_pid == 0 && std::chrono::steady_clock::now() < end)
+    usleep(500);
+  if (state.si_pid == 0) send(SIGKILL);
+  return wait();
+}
+
 Outcome run(const std::vector<std::string>& arguments, const Start& start) {
   return Program(arguments, start).wait();
 }
