@@ -2,6 +2,7 @@
 // message and an exit code.
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -48,7 +49,8 @@ void open_standard_streams() {
 // Where an exception may not pass: no memory in a function of others, say, that promises to throw
 // nothing. CLBlast 1.5.3 does where the device has none.
 [[noreturn]] void end_at_once() {
-  remove_unfinished();
+  static std::atomic<bool> ending = false;
+  if (!ending.exchange(true)) remove_unfinished();  // which may lead here again
   constexpr std::string_view message =
       "moclean: cannot go on, there is not enough memory of the machine or, for CLBlast, of the "
       "device\n";

@@ -141,7 +141,9 @@ bool Program::shows(const std::string& text) {
   return true;
 }
 
-void Program::send(int signal) const { kill(process_, signal); }
+void Program::send(int signal) const {
+  if (process_ > 0) kill(process_, signal);  // 0 would be our own group
+}
 
 Outcome Program::wait() {
   int status = 0;

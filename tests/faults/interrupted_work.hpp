@@ -71,7 +71,13 @@ class Workshop {
     return {.cache = folder_ / "out/cache", .environment = {"TMPDIR=" + (folder_ / "tmp")}};
   }
 
-  Results results() const { return contents_below(folder_, "out"); }
+  Results results() const {
+    Results all = contents_below(folder_, "out");
+    // that a device was used before is noted for what is shown next time, and for nothing else
+    std::erase_if(
+        all, [](const auto& result) { return result.first.starts_with("cache/moclean/used-"); });
+    return all;
+  }
 
   /// The first of the results that is no complete one, with its place; empty if there is none. A
   /// list that grows by lines (`.jsonl`) may have fewer.

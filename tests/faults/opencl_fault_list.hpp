@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdlib>
-#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -73,37 +72,5 @@ inline std::vector<OpenClFaultCase> faults_of(const std::string& function, long 
     some.push_back(all[static_cast<std::size_t>((2 * i + 1) * count / (2 * most))]);
   return some;
 }
-
-/// What became of the faults of each function.
-class FaultTable {
- public:
-  struct Row {
-    long calls = 0;     ///< of an undisturbed run, all works together
-    long injected = 0;  ///< runs with a fault
-    long told = 0;      ///< ended with an error
-    long harmless = 0;  ///< ended with the bits of an undisturbed one
-  };
-
-  Row& operator[](const std::string& function) { return rows_[function]; }
-
-  void print(const char* title) const {
-    Row sum;
-    fmt::print("{}\n{:<28}{:>8}{:>10}{:>8}{:>10}\n", title, "function", "calls", "injected", "told",
-               "harmless");
-    for (const auto& [function, row] : rows_) {
-      fmt::print("{:<28}{:>8}{:>10}{:>8}{:>10}\n", function, row.calls, row.injected, row.told,
-                 row.harmless);
-      if (function != "any") sum.calls += row.calls;
-      sum.injected += row.injected;
-      sum.told += row.told;
-      sum.harmless += row.harmless;
-    }
-    fmt::print("{:<28}{:>8}{:>10}{:>8}{:>10}\n", "all", sum.calls, sum.injected, sum.told,
-               sum.harmless);
-  }
-
- private:
-  std::map<std::string, Row> rows_;
-};
 
 }  // namespace moclean::test

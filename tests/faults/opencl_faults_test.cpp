@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 
 #include "cli/batch_folder.hpp"
+#include "faults/fault_table.hpp"
 #include "faults/opencl_fault_list.hpp"
 
 namespace moclean::test {

@@ -11,6 +11,7 @@
 #include "moclean/denoise/chain.hpp"
 
 #include "cli/batch_folder.hpp"
+#include "faults/fault_table.hpp"
 #include "faults/opencl_fault_list.hpp"
 #include "support/matrix.hpp"
 
