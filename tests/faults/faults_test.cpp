@@ -152,7 +152,9 @@ class Faults : public ::testing::TestWithParam<Work> {
 TEST_P(Faults, OfFilesAreSurvived) {
   for (const char* function : {"open", "read", "write", "close", "rename"}) {
     expect_survival(function, 20);
-    EXPECT_GT(table[function].told, 0) << function << " never mattered";
+    if (GetParam().name != "Info") {
+      EXPECT_GT(table[function].told, 0) << function << " never mattered";
+    }
     expect_survival(function, 4, "+");
     expect_survival(function, 4, ":interrupted");
   }
