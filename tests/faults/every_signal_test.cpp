@@ -78,7 +78,7 @@ class EverySignal : public ::testing::TestWithParam<InterruptedWork> {
     std::this_thread::sleep_for(moment * workshop_.duration());
     program.send(signal);
 
-    const int exit_code = program.wait_at_most(std::chrono::seconds(20)).exit_code;
+    const int exit_code = program.wait_at_most(patience()).exit_code;
 
     // before the program has begun, and of what cannot be caught, the system has the say
     EXPECT_THAT(exit_code, AnyOf(0, 130, -signal));
@@ -100,7 +100,7 @@ class EverySignal : public ::testing::TestWithParam<InterruptedWork> {
     Program program(workshop_.command(), workshop_.start());
     setrlimit(RLIMIT_FSIZE, &before);
 
-    const Outcome outcome = program.wait_at_most(std::chrono::seconds(20));
+    const Outcome outcome = program.wait_at_most(patience());
 
     ASSERT_THAT(outcome.exit_code, AnyOf(0, 1)) << outcome.err;
     EXPECT_EQ(workshop_.half_result(false), "");
@@ -110,6 +110,12 @@ class EverySignal : public ::testing::TestWithParam<InterruptedWork> {
       EXPECT_THAT(outcome.err, StartsWith("moclean: "));
     }
     expect_the_next_run_whole();
+  }
+
+  // Where a signal does nothing the run takes its time.
+  std::chrono::milliseconds patience() const {
+    return std::chrono::seconds(20) +
+           std::chrono::duration_cast<std::chrono::milliseconds>(3 * workshop_.duration());
   }
 
   void expect_the_next_run_whole() const {
