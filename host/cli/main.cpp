@@ -6,6 +6,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <new>
@@ -56,6 +57,18 @@ void open_standard_streams() {
       "device\n";
   [[maybe_unused]] const ssize_t ignored = write(STDERR_FILENO, message.data(), message.size());
   _exit(static_cast<int>(ExitCode::failed));
+}
+
+// A library may end the process by exit(): LLVM does in an OpenCL driver that cannot write its
+// files.
+bool returns_from_main = false;
+const pid_t process = getpid();
+
+void explain_exit() {
+  if (returns_from_main || getpid() != process) return;  // that of a child is not our end
+  remove_unfinished();
+  std::fputs("moclean: ended by a library, most likely the OpenCL driver, for the reason above\n",
+             stderr);
 }
 
 // Whoever reads from a pipe may have enough and go: no word then, as everywhere.
@@ -167,13 +180,16 @@ int main(int count, char** arguments) {
   using namespace moclean::cli;
   open_standard_streams();
   std::set_terminate(end_at_once);
+  std::atexit(explain_exit);
   try {
     const SignalWatch signals;  // before the threads of the OpenCL driver
     const ExitCode code = with_output_sent(run_program(count, arguments));
     moclean::remove_unfinished();  // the folder of the driver's kernels, if they had to have one
+    returns_from_main = true;
     return static_cast<int>(code);
   } catch (const std::exception&) {  // a thread that cannot be made, no memory for a message
     std::fputs("moclean: there is not enough memory\n", stderr);
+    returns_from_main = true;
     return static_cast<int>(ExitCode::failed);
   }
 }

@@ -18,7 +18,7 @@ namespace moclean::test {
 namespace {
 
 using ::testing::AnyOf;
-using ::testing::StartsWith;
+using ::testing::HasSubstr;
 
 const char* const grid = R"(seeds = 2
 [[take]]
@@ -107,7 +107,7 @@ class EverySignal : public ::testing::TestWithParam<InterruptedWork> {
     if (outcome.exit_code == 0) {
       EXPECT_EQ(workshop_.difference(), "");
     } else {
-      EXPECT_THAT(outcome.err, StartsWith("moclean: "));
+      EXPECT_THAT(outcome.err, HasSubstr("moclean: "));  // a driver may speak, too
     }
     expect_the_next_run_whole();
   }
@@ -146,7 +146,7 @@ TEST_P(EverySignal, AtAnyMomentCostsNothing) {
 
 TEST_P(EverySignal, IsNotNeededWhereFilesMayNotBeLarge) {
   if (largest_result() == 0) GTEST_SKIP() << "writes no file";
-  const int limits = all_signals() ? 20 : 2;
+  const int limits = all_signals() ? 20 : 4;
   for (int i = 0; i < limits; ++i)
     limit_files(2048 + largest_result() * static_cast<rlim_t>(i) / static_cast<rlim_t>(limits));
 }
