@@ -56,6 +56,11 @@ SignalWatch::SignalWatch() : signals_(signals_not_ignored()) {
   ignore.sa_handler = SIG_IGN;
   for (const int signal : {SIGPIPE, SIGXFSZ}) sigaction(signal, &ignore, nullptr);
   pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
+  // LLVM, with which PoCL compiles, puts a handler of its own where one was ignored.
+  sigset_t of_files;
+  sigemptyset(&of_files);
+  sigaddset(&of_files, SIGXFSZ);
+  pthread_sigmask(SIG_BLOCK, &of_files, nullptr);
   watcher_ = std::jthread([this](const std::stop_token& done) { watch(signals_, done); });
 }
 

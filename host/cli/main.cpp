@@ -2,9 +2,11 @@
 // message and an exit code.
 
 #include <algorithm>
+#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <new>
@@ -46,12 +48,27 @@ void open_standard_streams() {
 }
 
 // Where an exception may not pass: no memory in a function of others, say, that promises to throw
-// nothing.
+// nothing. CLBlast 1.5.3 does where the device has none.
 [[noreturn]] void end_at_once() {
-  remove_unfinished();
-  constexpr std::string_view message = "moclean: cannot go on, there is not enough memory\n";
+  static std::atomic<bool> ending = false;
+  if (!ending.exchange(true)) remove_unfinished();  // which may lead here again
+  constexpr std::string_view message =
+      "moclean: cannot go on, there is not enough memory of the machine or, for CLBlast, of the "
+      "device\n";
   [[maybe_unused]] const ssize_t ignored = write(STDERR_FILENO, message.data(), message.size());
   _exit(static_cast<int>(ExitCode::failed));
+}
+
+// A library may end the process by exit(): LLVM does in an OpenCL driver that cannot write its
+// files.
+bool returns_from_main = false;
+const pid_t process = getpid();
+
+void explain_exit() {
+  if (returns_from_main || getpid() != process) return;  // that of a child is not our end
+  remove_unfinished();
+  std::fputs("moclean: ended by a library, most likely the OpenCL driver, for the reason above\n",
+             stderr);
 }
 
 // Whoever reads from a pipe may have enough and go: no word then, as everywhere.
@@ -163,13 +180,16 @@ int main(int count, char** arguments) {
   using namespace moclean::cli;
   open_standard_streams();
   std::set_terminate(end_at_once);
+  std::atexit(explain_exit);
   try {
     const SignalWatch signals;  // before the threads of the OpenCL driver
     const ExitCode code = with_output_sent(run_program(count, arguments));
     moclean::remove_unfinished();  // the folder of the driver's kernels, if they had to have one
+    returns_from_main = true;
     return static_cast<int>(code);
   } catch (const std::exception&) {  // a thread that cannot be made, no memory for a message
     std::fputs("moclean: there is not enough memory\n", stderr);
+    returns_from_main = true;
     return static_cast<int>(ExitCode::failed);
   }
 }

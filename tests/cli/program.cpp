@@ -141,7 +141,9 @@ bool Program::shows(const std::string& text) {
   return true;
 }
 
-void Program::send(int signal) const { kill(process_, signal); }
+void Program::send(int signal) const {
+  if (process_ > 0) kill(process_, signal);  // 0 would be our own group
+}
 
 Outcome Program::wait() {
   int status = 0;
@@ -153,6 +155,16 @@ Outcome Program::wait() {
   if (terminal_ >= 0) read_terminal();
   outcome.err = terminal_ >= 0 ? shown_ : rewound_content(err_);
   return outcome;
+}
+
+Outcome Program::wait_at_most(std::chrono::milliseconds time) {
+  const auto end = std::chrono::steady_clock::now() + time;
+  siginfo_t state{};
+  while (waitid(P_PID, static_cast<id_t>(process_), &state, WEXITED | WNOHANG | WNOWAIT) == 0 &&
+         state.si_pid == 0 && std::chrono::steady_clock::now() < end)
+    usleep(500);
+  if (state.si_pid == 0) send(SIGKILL);
+  return wait();
 }
 
 Outcome run(const std::vector<std::string>& arguments, const Start& start) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,9 @@ class Program {
 
   /// Waits for the end.
   Outcome wait();
+
+  /// Waits for the end; kills what still runs after `time`, so that its exit code is -SIGKILL.
+  Outcome wait_at_most(std::chrono::milliseconds time);
 
  private:
   void read_terminal();

@@ -11,6 +11,7 @@
 #include <signal.h>
 
 #include "cli/batch_folder.hpp"
+#include "faults/fault_table.hpp"
 
 namespace moclean::test {
 namespace {
@@ -36,11 +37,18 @@ std::vector<Work> works() {
             "@out/masks", "--resume"}},
           {"AllOrNothing",
            {"denoise", "@in", "-o", "@out/clean", "--method", "median", "--jobs", "1",
-            "--all-or-nothing"}}};
+            "--all-or-nothing"}},
+          {"Info", {"info", "@in/a.csv"}}};
 }
+
+using Results = std::vector<std::pair<std::string, std::string>>;
+
+FaultTable table;
 
 class Faults : public ::testing::TestWithParam<Work> {
  protected:
+  static void TearDownTestSuite() { table.print("of the system"); }
+
   void prepare() {
     fs::remove_all(folder_ / "out");
     fs::create_directory(folder_ / "out");
@@ -55,9 +63,10 @@ class Faults : public ::testing::TestWithParam<Work> {
   }
 
   Outcome run_with(const std::string& fault) const {
-    return run(command(),
-               {.environment = {"LD_PRELOAD=" MOCLEAN_FAULTS_LIBRARY, "MOCLEAN_FAULT=" + fault,
-                                "MOCLEAN_FAULT_CALLS=" + (folder_ / "calls")}});
+    Program program(command(),
+                    {.environment = {"LD_PRELOAD=" MOCLEAN_FAULTS_LIBRARY, "MOCLEAN_FAULT=" + fault,
+                                     "MOCLEAN_FAULT_CALLS=" + (folder_ / "calls")}});
+    return program.wait_at_most(std::chrono::seconds(20));
   }
 
   // How often an undisturbed run calls a function.
@@ -68,46 +77,68 @@ class Faults : public ::testing::TestWithParam<Work> {
   }
 
   // All that a run makes or replaces.
-  std::vector<std::pair<std::string, std::string>> results() const {
+  Results results() const {
     auto all = contents_below(folder_, "out");
     all.emplace_back("copy.csv", content(folder_ / "copy.csv"));
     return all;
   }
 
-  // Every n-th call, so that the test stays short.
-  void expect_survival(const std::string& function, long tried) {
+  // Calls of a function fail, every n-th in turn, so that the test stays short. `how` follows the
+  // number: `+` from then on, `:interrupted`.
+  void expect_survival(const std::string& function, long tried, const std::string& how = "") {
     const long calls = calls_of(function);
     const auto whole = results();
-    ASSERT_GT(calls, 0) << function;
     const char* all = std::getenv("MOCLEAN_FAULTS");
     const long step = all && std::string_view(all) == "all" ? 1 : std::max(1L, calls / tried);
-    long failed = 0;
+    FaultTable::Row& row = table[function + how];
+    row.calls += calls;
     for (long n = 1; n <= calls; n += step) {
-      SCOPED_TRACE(fmt::format("call {} of {} of {}()", n, calls, function));
-      prepare();
-      const auto before = results();
-
-      const Outcome outcome = run_with(fmt::format("{}:{}", function, n));
-
-      ASSERT_THAT(outcome.exit_code, AnyOf(0, 1)) << outcome.err;
-      if (outcome.exit_code != 0) {
-        EXPECT_THAT(outcome.err, ::testing::StartsWith("moclean: "));
-      }
-      for (const auto& [name, bytes] : results()) {
-        EXPECT_FALSE(name.ends_with(".tmp")) << name;
-        const bool is_whole = std::ranges::find(whole, std::pair(name, bytes)) != whole.end(),
-                   is_old = std::ranges::find(before, std::pair(name, bytes)) != before.end();
-        if (!name.ends_with(".jsonl")) {
-          EXPECT_TRUE(is_whole || is_old) << name << " is half";
-        }
-      }
-      if (outcome.exit_code == 0) continue;
-      ++failed;
-      folder_.write("copy.csv", small_walk(12));
-      EXPECT_EQ(run(command()).exit_code, 0);
-      EXPECT_TRUE(results() == whole) << "the next run differs";
+      SCOPED_TRACE(fmt::format("call {}{} of {} of {}()", n, how, calls, function));
+      ++row.injected;
+      const bool told = fail_once(fmt::format("{}:{}{}", function, n, how), whole);
+      ++(told ? row.told : row.harmless);
     }
-    EXPECT_GT(failed, 0) << function << " never mattered";
+  }
+
+  // Whether the program ended with an error; it has to leave nothing half, and the next run ends as
+  // if nothing had been.
+  bool fail_once(const std::string& fault, const Results& whole) {
+    prepare();
+    const auto before = results();
+
+    const Outcome outcome = run_with(fault);
+
+    EXPECT_THAT(outcome.exit_code, AnyOf(0, 1)) << outcome.err;
+    if (outcome.exit_code != 0 && !fault.starts_with("write:")) {  // the message is written, too
+      EXPECT_THAT(outcome.err, ::testing::HasSubstr("moclean: "));
+    }
+    const bool may_litter = fault.starts_with("remove:") || fault.starts_with("unlinkat:");
+    for (const auto& [name, bytes] : results()) {
+      if (name.ends_with(".tmp")) {
+        EXPECT_TRUE(may_litter) << name;
+        continue;
+      }
+      const bool is_whole = std::ranges::find(whole, std::pair(name, bytes)) != whole.end(),
+                 is_old = std::ranges::find(before, std::pair(name, bytes)) != before.end();
+      if (!name.ends_with(".jsonl")) {
+        EXPECT_TRUE(is_whole || is_old) << name << " is half";
+      }
+    }
+    if (outcome.exit_code == 0) {
+      for (const auto& [name, bytes] : whole)
+        if (!name.ends_with(".jsonl")) {
+          EXPECT_EQ(content(folder_ / name_in_folder(name)), bytes) << name << " is missing";
+        }
+      return false;
+    }
+    folder_.write("copy.csv", small_walk(12));
+    EXPECT_EQ(run(command()).exit_code, 0);
+    EXPECT_TRUE(results() == whole) << "the next run differs";
+    return true;
+  }
+
+  static std::string name_in_folder(const std::string& name) {
+    return name == "copy.csv" ? name : "out/" + name;
   }
 
   void SetUp() override {
@@ -119,19 +150,59 @@ class Faults : public ::testing::TestWithParam<Work> {
 };
 
 TEST_P(Faults, OfFilesAreSurvived) {
-  for (const char* function : {"open", "read", "write", "close", "rename"})
-    expect_survival(function, 40);
+  for (const char* function : {"open", "read", "write", "close", "rename"}) {
+    expect_survival(function, 20);
+    if (GetParam().name != "Info") {
+      EXPECT_GT(table[function].told, 0) << function << " never mattered";
+    }
+    expect_survival(function, 4, "+");
+    expect_survival(function, 4, ":interrupted");
+  }
+  expect_survival("write", 10, ":short");
 }
 
 TEST_P(Faults, OfTheDiskAreSurvivedWhereAFileIsReplaced) {
   if (GetParam().name != "Replace") GTEST_SKIP() << "replaces nothing";
   expect_survival("fsync", 40);
+  EXPECT_GT(table["fsync"].told, 0);
 }
 
-TEST_P(Faults, OfMemoryAreSurvived) { expect_survival("malloc", 25); }
+TEST_P(Faults, OfFoldersAndNamesAreSurvived) {
+  for (const char* function : {"stat", "fstat", "mkdir", "readdir", "openat", "remove", "unlinkat",
+                               "truncate", "lseek", "fchmod", "fchown", "flock", "writev"}) {
+    expect_survival(function, 5);
+    expect_survival(function, 2, "+");
+  }
+}
+
+TEST_P(Faults, OfMemoryAndThreadsAreSurvived) {
+  expect_survival("malloc", 20);
+  EXPECT_GT(table["malloc"].told, 0);
+  expect_survival("malloc", 8, "+");  // it hung where nothing had been made before
+  for (const char* function : {"realloc", "calloc", "aligned_alloc", "pthread_create"}) {
+    expect_survival(function, 5);
+    expect_survival(function, 2, "+");
+  }
+}
+
+class FaultsOnADevice : public Faults {};
+
+// That of a driver and its compiler.
+TEST_P(FaultsOnADevice, OfMappedMemoryAreSurvived) {
+  if (run({"devices", "--json"}).json().empty()) GTEST_SKIP() << "no OpenCL device";
+  for (const char* function : {"mmap", "munmap"}) {
+    expect_survival(function, 4);
+    expect_survival(function, 2, "+");
+  }
+}
 
 INSTANTIATE_TEST_SUITE_P(Of, Faults, ::testing::ValuesIn(works()),
                          [](const auto& test) { return test.param.name; });
+
+INSTANTIATE_TEST_SUITE_P(
+    Of, FaultsOnADevice,
+    ::testing::Values(Work{"Denoise", {"denoise", "@in", "-o", "@out/clean", "--method", "tsvd"}}),
+    [](const auto& test) { return test.param.name; });
 
 }  // namespace
 }  // namespace moclean::test

@@ -55,6 +55,18 @@ ProfileReport profile_of(const Device& device, const DenoiseOptions& options,
           .precision = options.precision};
 }
 
+// Measured when all is written: a device that fails then costs the profile, which is told.
+ExitCode add_profile(OpenedBackend& opened, const DenoiseOptions& options, double solve_seconds) {
+  if (!options.profile || !opened.device) return ExitCode::done;
+  try {
+    opened.report.profile = profile_of(*opened.device, options, solve_seconds);
+    return ExitCode::done;
+  } catch (const DeviceError& error) {
+    warn("--profile: {}", error.what());
+    return ExitCode::failed;
+  }
+}
+
 void tell_notes(const std::vector<TakeReport>& takes) {
   for (const TakeReport& take : takes)
     for (const std::string& line : note_lines(take.file, take.notes)) warn("{}", line);
@@ -281,15 +293,15 @@ ExitCode run_planned(const BatchPlan& plan, const StandardStreams& streams) {
   streams.send();
   lines.check();
 
-  if (options.profile && opened.device)
-    opened.report.profile = profile_of(*opened.device, options, report.seconds.solve);
+  const ExitCode profiled = add_profile(opened, options, report.seconds.solve);
   for (TakeReport& take : report.takes) {
     take.file = streams.named(take.file.string());
     take.failure = streams.named(take.failure);
   }
   if (!options.json.empty()) write_json(options.json, whole_record(plan, opened.report, report));
   if (options.reports() && !streams.writes()) print_report(plan, streams, report, opened.report);
-  return tell_problems(report, plan.passed_by.problems);
+  const ExitCode code = tell_problems(report, plan.passed_by.problems);
+  return profiled == ExitCode::done ? code : profiled;
 }
 
 ExitCode plan_and_run(const DenoiseLayers& layers, const DenoiseOptions& options,

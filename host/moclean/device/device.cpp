@@ -40,12 +40,20 @@ struct Candidate {
   cl::Device device;
 };
 
+// What there is, and of platforms that could not tell theirs, why.
+struct Candidates {
+  std::vector<Candidate> found;
+  std::string problems;
+};
+
 // The ICD loader reports "no platform" and "no device" as errors; to us both are empty lists.
 std::vector<cl::Platform> platforms() {
   std::vector<cl::Platform> found;
   try {
     cl::Platform::get(&found);
-  } catch (const cl::Error&) {
+  } catch (const cl::Error& error) {
+    constexpr cl_int none = -1001;  // CL_PLATFORM_NOT_FOUND_KHR
+    if (error.err() != none) throw;
     found.clear();
   }
   return found;
@@ -55,25 +63,39 @@ std::vector<cl::Device> devices_of(const cl::Platform& platform) {
   std::vector<cl::Device> found;
   try {
     platform.getDevices(CL_DEVICE_TYPE_ALL, &found);
-  } catch (const cl::Error&) {
+  } catch (const cl::Error& error) {
+    if (error.err() != CL_DEVICE_NOT_FOUND) throw;
     found.clear();
   }
   return found;
 }
 
-std::vector<Candidate> candidates() {
-  std::vector<Candidate> all;
+void add_candidates(const cl::Platform& platform, int platform_index, std::vector<Candidate>& all) {
+  int index = 0;
+  for (const auto& device : devices_of(platform)) {
+    Candidate candidate{info_of(platform, device), device};
+    candidate.info.platform = platform_index;
+    candidate.info.index = index++;
+    all.push_back(std::move(candidate));
+  }
+}
+
+// A driver that is broken must not take the others' devices away.
+Candidates candidates() {
+  Candidates all;
   int platform_index = 0;
   for (const auto& platform : platforms()) {
-    int index = 0;
-    for (const auto& device : devices_of(platform)) {
-      Candidate candidate{info_of(platform, device), device};
-      candidate.info.platform = platform_index;
-      candidate.info.index = index++;
-      all.push_back(std::move(candidate));
+    try {
+      add_candidates(platform, platform_index, all.found);
+    } catch (const cl::Error& error) {
+      all.problems +=
+          fmt::format("{}platform {}: {} returned {}", all.problems.empty() ? "" : ", ",
+                      platform_index, opencl_function(error.what()), opencl_status(error.err()));
     }
     ++platform_index;
   }
+  if (all.found.empty() && !all.problems.empty())
+    throw DeviceError("OpenCL failed to list the devices of " + all.problems);
   return all;
 }
 
@@ -100,7 +122,7 @@ bool matches(const DeviceInfo& info, const std::string& wanted) {
 }
 
 Candidate choose(std::string_view selection) {
-  const auto all = candidates();
+  const auto [all, problems] = candidates();
   const auto better = [](const Candidate& a, const Candidate& b) {
     const auto score = [](const DeviceInfo& i) {
       return std::tuple(i.fp64, i.kind == DeviceKind::gpu, i.kind == DeviceKind::cpu);
@@ -117,6 +139,7 @@ Candidate choose(std::string_view selection) {
     throw DeviceError("no OpenCL device found; install a driver, for a CPU pocl-opencl-icd");
   std::string found;
   for (const auto& candidate : all) found += (found.empty() ? "" : ", ") + describe(candidate.info);
+  if (!problems.empty()) found += "; failed: " + problems;
   throw DeviceError(fmt::format("no OpenCL device matches '{}' (found: {})", selection, found));
 }
 
@@ -142,7 +165,7 @@ std::string to_string(DeviceKind kind) {
 std::vector<DeviceInfo> list_devices() {
   return translate_opencl_errors("to list the devices", [] {
     std::vector<DeviceInfo> infos;
-    for (auto& candidate : candidates()) infos.push_back(std::move(candidate.info));
+    for (auto& candidate : candidates().found) infos.push_back(std::move(candidate.info));
     return infos;
   });
 }

@@ -19,17 +19,27 @@ std::size_t whole_groups(std::size_t items, std::size_t group) {
   return (items + group - 1) / group * group;
 }
 
-cl::Program build(const Device& device, const std::string& text, const std::string& options) {
-  cl::Program program = translate_opencl_errors("to load a program on " + device.info().name, [&] {
-    return cl::Program(device.context(), text);
-  });
+// What the compiler says; a driver may have nothing, or not be able to tell it.
+std::string log_of(const cl::Program& program, const Device& device) {
   try {
-    program.build({device.handle()}, options.c_str());
+    std::string log = program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.handle());
+    return log.find_first_not_of(" \n") == log.npos ? "(no log)" : log;
   } catch (const cl::Error& error) {
-    const auto log = program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(device.handle());
-    throw DeviceError(fmt::format("OpenCL compiler of {} failed ({}) with options {}:\n{}",
-                                  device.info().name, opencl_status(error.err()), options, log));
+    return fmt::format("(no log: {} returned {})", error.what(), opencl_status(error.err()));
   }
+}
+
+// Not cl::Program::build(), which asks for the log of what was built, too, and takes a failure of
+// that for one of the compiler.
+cl::Program build(const Device& device, const std::string& text, const std::string& options) {
+  cl::Program program(device.context(), text);
+  const cl_device_id target = device.handle()();
+  const cl_int status = clBuildProgram(program(), 1, &target, options.c_str(), nullptr, nullptr);
+  if (status != CL_SUCCESS)
+    throw DeviceError(
+        fmt::format("OpenCL compiler of {} failed (clBuildProgram returned {}) with "
+                    "options {}:\n{}",
+                    device.info().name, opencl_status(status), options, log_of(program, device)));
   return program;
 }
 
@@ -39,8 +49,10 @@ Program::Program(const Device& device, std::string_view source, const Defines& d
     : device_(&device) {
   const std::string options = options_of(defines);
   const std::string text = std::string(kernel_source::prelude) + std::string(source);
-  program_ = device.programs().find_or_build(options + '\n' + text,
-                                             [&] { return build(device, text, options); });
+  translate_opencl_errors("to load a program on " + device.info().name, [&] {
+    program_ = device.programs().find_or_build(options + '\n' + text,
+                                               [&] { return build(device, text, options); });
+  });
 }
 
 Kernel::Kernel(const Program& program, const std::string& name)
@@ -65,7 +77,7 @@ void Kernel::launch(const Grid& grid) {
         kernel_, cl::NullRange, cl::NDRange(whole_groups(grid.x, grid.group_x), grid.y, grid.z),
         cl::NDRange(grid.group_x, 1, 1), nullptr, profile ? &event : nullptr);
   });
-  if (profile) profile->record(name_, event, work);
+  if (profile) profile->record(name_, std::move(event), work);
 }
 
 }  // namespace moclean

@@ -23,6 +23,9 @@ namespace moclean {
 /// The name of an OpenCL status code, `CL_OUT_OF_RESOURCES`; the number where it is not known.
 std::string opencl_status(cl_int status);
 
+/// The OpenCL function that a cl::Error names: the bindings say `Retain Object`, and misspell one.
+std::string opencl_function(const char* name);
+
 /// Runs `work` and turns a cl::Error into a DeviceError that says what was attempted. The only
 /// translation of OpenCL failures; `what` reads "to allocate 8192 bytes on pthread-skylake".
 template <class Work>
@@ -30,8 +33,8 @@ auto translate_opencl_errors(const std::string& what, Work&& work) {
   try {
     return std::forward<Work>(work)();
   } catch (const cl::Error& error) {
-    throw DeviceError("OpenCL failed " + what + ": " + error.what() + " returned " +
-                      opencl_status(error.err()));
+    throw DeviceError("OpenCL failed " + what + ": " + opencl_function(error.what()) +
+                      " returned " + opencl_status(error.err()));
   }
 }
 

@@ -1,6 +1,7 @@
 #include "moclean/device/profile.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace moclean {
 namespace {
@@ -33,8 +34,7 @@ double BusyTime::seconds() const {
   return 1e-9 * static_cast<double>(all.time);
 }
 
-void Profile::record(const std::string& kernel, const cl::Event& event,
-                     const std::optional<Work>& work) {
+void Profile::record(const std::string& kernel, cl::Event event, const std::optional<Work>& work) {
   const std::lock_guard lock(mutex_);
   KernelProfile& profile = kernels_[kernel];
   if (profile.calls == 0) {
@@ -46,7 +46,7 @@ void Profile::record(const std::string& kernel, const cl::Event& event,
   else if (profile.work)
     *profile.work += *work;
   ++profile.calls;
-  pending_.push_back({&profile, event});
+  pending_.push_back({&profile, std::move(event)});
   translate_opencl_errors("to profile kernel " + kernel, [&] {
     while (pending_.size() > most_pending && is_over(pending_.front().event)) add_oldest();
   });

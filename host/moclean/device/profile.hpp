@@ -66,7 +66,7 @@ class BusyTime {
 class Profile {
  public:
   /// Takes the event of a launch that was enqueued.
-  void record(const std::string& kernel, const cl::Event& event, const std::optional<Work>& work);
+  void record(const std::string& kernel, cl::Event event, const std::optional<Work>& work);
 
   /// Waits for the launches, and returns their kernels, the one with the most time first.
   std::vector<KernelProfile> kernels();
