@@ -254,6 +254,13 @@ TEST(Table, TakesRowNamesOfRForNoSamplesEvenIfTheyDoNotCount) {
   EXPECT_EQ(table("a,b\n1,5,2\n7,6,3\n3,6,4\n").samples, (Matrix{{5, 2}, {6, 3}, {6, 4}}));
 }
 
+TEST(Table, ReadsOneRowOfWordsUnderNamesInAComment) {
+  const Recording recording = table("# A.x A.y A.z\n4 5 6\n");
+
+  EXPECT_THAT(recording.columns, ElementsAre("A.x", "A.y", "A.z"));
+  EXPECT_EQ(recording.samples, (Matrix{{4, 5, 6}}));
+}
+
 TEST(Table, PassesTextThroughAndRefusesItAmongNumbers) {
   EXPECT_THAT(table("a,who\n1,me\n2,you\n").columns, ElementsAre("a"));
   EXPECT_THAT(table("clock,A.x,A.y\n10:00,1,2\n10:01,1,2\n").notes.passed_through,

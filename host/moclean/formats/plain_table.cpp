@@ -99,7 +99,9 @@ char separator_between(std::string_view names, const std::vector<std::string_vie
   const std::size_t words = count_cells(names, between_words);
   const std::size_t cells = count_cells(row, between_words);
   const bool are_words =
-      words > 1 && (words == cells || words + 1 == cells) && are_numbers(row, between_words);
+      words > 1 &&
+      (rows.empty() ? are_numbers(names, between_words)  // one row, names in a comment
+                    : (words == cells || words + 1 == cells) && are_numbers(row, between_words));
   return are_words ? between_words : ',';
 }
 
