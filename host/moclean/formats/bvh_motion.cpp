@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -152,6 +153,18 @@ class BvhMotionParser {
     }
   }
 
+  // Then a frame may be over several lines even if the first one is not.
+  bool numbers_fill_stated_frames() {
+    if (!fills_stated_) {
+      const auto width = static_cast<Index>(scales_.size());
+      Index words = 0;
+      WordsOfLines lines(text_.substr(document_.rows));
+      while (const std::size_t own = lines.next(scales_.size())) words += static_cast<Index>(own);
+      fills_stated_ = words % width == 0 && words / width == document_.stated_frames;
+    }
+    return *fills_stated_;
+  }
+
   void frames() {
     RowCollector rows(static_cast<Index>(scales_.size()));
     Index whole = 0;
@@ -189,7 +202,7 @@ class BvhMotionParser {
     for (std::size_t c = 0; c < scales_.size(); ++c) {
       if (scanner_.at_line_end()) {
         if (breaks_off(c, line)) return false;
-        if (lines_per_frame_ == 1) fail_width_found(c);
+        if (lines_per_frame_ == 1 && !numbers_fill_stated_frames()) fail_width_found(c);
         scanner_.at_end();
       }
       double value = 0;
@@ -244,6 +257,7 @@ class BvhMotionParser {
   Index lines_per_frame_ = 1;
   std::size_t first_width_ = 0;  // words of the first line
   Index read_ = 0;               // whole frames so far
+  std::optional<bool> fills_stated_;
 };
 
 }  // namespace
