@@ -10,15 +10,18 @@
 
 namespace moclean::fuzz {
 
-/// A format as a target: how its files are read from memory and written.
+/// A format as a target: how its files are read from memory and written, and what is not promised.
 struct Codec {
   const Format& format;
   Recording (*read)(std::string_view content, const std::filesystem::path& file,
                     const ReadOptions& options);
-  bool rounds_changes = false;  ///< to the decimals that the file uses
-  bool holds_infinite = false;  ///< samples may be so
-  bool guesses_columns =
-      false;  ///< by values where names do not tell, so that a part may be read otherwise
+  bool rounds_changes = false;      ///< to the decimals that the file uses
+  bool holds_infinite = false;      ///< samples may be so
+  bool cuts_while_reading = false;  ///< what is cut later has no source
+  bool copies_unread = false;       ///< parts of the file, which may be damaged
+  /// Columns and separators are told by values where names do not tell, so that a part of the file,
+  /// or a changed one, may be read otherwise, or not at all.
+  bool guesses_columns = false;
   MemoryBound bound = {};
 };
 
