@@ -190,7 +190,8 @@ TEST_P(BvhFrameTime, ThatIsNoneNeedsTheRateOption) {
 
 INSTANTIATE_TEST_SUITE_P(Each, BvhFrameTime,
                          testing::Values("", "Frame Time: 0\n", "Frame Time: nan\n",
-                                         "Frame Time: -1.#IND\n", "Frame Time: -0.01\n"));
+                                         "Frame Time: -1.#IND\n", "Frame Time: -0.01\n",
+                                         "Frame Time: 1e-310\n"));
 
 TEST(BvhRate, ThatWasGivenWinsWithAWord) {
   const Recording recording = read_text(hierarchy + header + rows, 30);

@@ -227,6 +227,16 @@ TEST_F(C3dWriting, NumbersThePartOfATrial) {
   EXPECT_FALSE(c3d.parameters.has_group("MOCLEAN"));
 }
 
+TEST_F(C3dWriting, CountsThePartAlsoWhereTheCountIsAByte) {
+  C3dMaker maker{.frames = with_analog.frames};
+  maker.parameters = maker.parameter(1, "LONG_FRAMES", 1, {}, "\x03");
+  const Recording take = read(maker.bytes());
+
+  const Recording back = read(written(excerpt(take, 1, 3)));
+
+  EXPECT_TRUE(same_bits(back.samples, Matrix(take.samples.bottomRows(2))));
+}
+
 TEST_F(C3dWriting, HasNoSourceForThinnedFramesOrOtherColumns) {
   const Recording take = read(with_analog.bytes());
 

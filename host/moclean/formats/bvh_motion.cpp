@@ -104,8 +104,9 @@ class BvhMotionParser {
     document_.time_word = next_word();
     double seconds = 0;
     if (!scanner_.accept_number(seconds)) scanner_.fail_number();
-    if (seconds > 0) document_.frame_time = seconds;
-    if (!(seconds > 0) && rate == 0)
+    const bool is_time = seconds > 0 && std::isfinite(1 / seconds);
+    if (is_time) document_.frame_time = seconds;
+    if (!is_time && rate == 0)
       scanner_.fail("expected a positive frame time (--rate states the rate of a file without)");
     scanner_.expect_line_end();
   }
