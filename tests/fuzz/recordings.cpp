@@ -91,10 +91,11 @@ std::optional<Recording> again(const Codec& codec, const std::string& bytes,
   return recording;
 }
 
-// Whether a recording that is not all of its file as it was came back as one of the same columns.
+// Whether a recording that is not all of its file as it was came back understood in the same way.
 bool is_comparable(const Codec& codec, const Recording& before,
                    const std::optional<Recording>& after) {
-  if (codec.guesses_columns) return after && after->columns == before.columns;
+  if (codec.guesses_columns)
+    return after && after->columns == before.columns && after->notes.layout == before.notes.layout;
   expect(after.has_value(), "what was written can be read");
   return true;
 }
