@@ -133,6 +133,14 @@ TEST_F(GridFile, ErrorsNameLineKeyAndWhatWasExpected) {
                  "1: noise: missing, expected at least one [[noise]]");
 }
 
+TEST_F(GridFile, LettersBeyondAsciiStandInQuotesAndComments) {
+  expect_refused("seeds = 2\n# é\ngröße = 1\n",
+                 "3: expected letters of ASCII outside of quotes, found 'öße'");
+  for (const char* quoted : {"\"\\\"é\" # é", "'é\"'", "\"\"\"\né\" \"\"\"\"\"", "'''é'\n'''''"})
+    EXPECT_NE(read(with("\"both\"", quoted)).noises.at(0).label.find("é"), std::string::npos)
+        << quoted;
+}
+
 TEST_F(GridFile, TakesAreReadAndCut) {
   write_recording(folder_.path() / "walk.npy", synthetic_walk(20));
   const GridConfig config = read(whole);

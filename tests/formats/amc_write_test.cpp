@@ -127,6 +127,12 @@ TEST(AmcWrite, KeepsWhatMicrosoftsRuntimesPrintForNone) {
   EXPECT_EQ(as_amc(take), text);
 }
 
+// A comma behind one made decimal commas of all changed numbers, which no reader of AMC takes.
+TEST(AmcRead, RefusesWhatOnlyBeginsLikeThem) {
+  EXPECT_THAT([] { from_amc(swapped(test::tiny_amc, "0 90\n", "1.#QNAN, 90\n")); },
+              ThrowsMessage<FileError>(HasSubstr("expected a number, found '1.#QNAN,'")));
+}
+
 TEST(AmcWrite, RefusesRotationsOfOtherSkeletons) {
   Recording take = from_amc(test::tiny_amc);
   take.source.reset();

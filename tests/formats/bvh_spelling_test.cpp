@@ -99,6 +99,7 @@ INSTANTIATE_TEST_SUITE_P(
         Spelling{"no last line end", header + rows.substr(0, rows.size() - 1)},
         Spelling{"blank lines", header + "1.5 2 0 0\n\n3 4 90 -1.25\n\n\n"},
         Spelling{"wrapped", header + "1.5 2\n0 0\n3 4\n90 -1.25\n"},
+        Spelling{"wrapped but for the first", header + "1.5 2 0 0\n3 4\n90 -1.25\n"},
         Spelling{"wrapped unevenly", header + "1.5\n2 0\n0\n3\n4 90\n-1.25\n"},
         Spelling{"decimal commas",
                  "MOTION\nFrames: 2\nFrame Time: 0,01\n1,5 2,0 0 0\n3 4 90 "
@@ -189,7 +190,8 @@ TEST_P(BvhFrameTime, ThatIsNoneNeedsTheRateOption) {
 
 INSTANTIATE_TEST_SUITE_P(Each, BvhFrameTime,
                          testing::Values("", "Frame Time: 0\n", "Frame Time: nan\n",
-                                         "Frame Time: -1.#IND\n", "Frame Time: -0.01\n"));
+                                         "Frame Time: -1.#IND\n", "Frame Time: -0.01\n",
+                                         "Frame Time: 1e-310\n"));
 
 TEST(BvhRate, ThatWasGivenWinsWithAWord) {
   const Recording recording = read_text(hierarchy + header + rows, 30);

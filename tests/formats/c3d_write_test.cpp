@@ -1,6 +1,7 @@
 #include <string>
 #include <utility>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "moclean/core/error.hpp"
@@ -177,6 +178,34 @@ TEST_F(C3dWriting, StoresRealsWhereAnIntegerDoesNotFit) {
   }
 }
 
+// 0, 0, 0 without residual is missing if the point is elsewhere in other frames.
+TEST_F(C3dWriting, KeepsAPointAtTheOriginWhereItsOtherFramesChange) {
+  for (const int processor : {84, 85, 86})
+    for (const double scale : {-1.0, 0.5}) {
+      SCOPED_TRACE(fmt::format("processor {}, scale {}", processor, scale));
+      const std::vector<double> frame = {0, 0, 0, 0, 4, 5, 6, 0};
+      Recording take =
+          read(C3dMaker{.processor = processor, .scale = scale, .frames = {frame, frame}}.bytes());
+      take.samples(0, 0) = 1;      // is elsewhere now
+      take.samples.row(1) *= 0.0;  // the other point comes there
+
+      EXPECT_TRUE(same_bits(read(written(take)).samples, take.samples));
+    }
+}
+
+TEST_F(C3dWriting, KeepsAMissingPointMissingInAPartWhereItIsAtTheOrigin) {
+  for (const double scale : {-1.0, 0.5}) {
+    const Recording take = read(
+        C3dMaker{.scale = scale, .frames = {{0, 0, 0, 0, 4, 5, 6, 0}, {7, 8, 9, 0, 4, 5, 6, 0}}}
+            .bytes());
+
+    const Matrix back = read(written(excerpt(take, 0, 1))).samples;
+
+    EXPECT_TRUE(same_bits(
+        back, Matrix{{gap, gap, gap, take.samples(0, 3), take.samples(0, 4), take.samples(0, 5)}}));
+  }
+}
+
 TEST_F(C3dWriting, NumbersThePartOfATrial) {
   C3dMaker maker{.frames = with_analog.frames, .first_frame = 65530};
   maker.parameters =
@@ -196,6 +225,16 @@ TEST_F(C3dWriting, NumbersThePartOfATrial) {
   EXPECT_THAT(c3d.parameters.numbers("POINT", "LONG_FRAMES"), ElementsAre(2));
   EXPECT_EQ(real_at(result, c3d.layout.data_start + 32), 71);
   EXPECT_FALSE(c3d.parameters.has_group("MOCLEAN"));
+}
+
+TEST_F(C3dWriting, CountsThePartAlsoWhereTheCountIsAByte) {
+  C3dMaker maker{.frames = with_analog.frames};
+  maker.parameters = maker.parameter(1, "LONG_FRAMES", 1, {}, "\x03");
+  const Recording take = read(maker.bytes());
+
+  const Recording back = read(written(excerpt(take, 1, 3)));
+
+  EXPECT_TRUE(same_bits(back.samples, Matrix(take.samples.bottomRows(2))));
 }
 
 TEST_F(C3dWriting, HasNoSourceForThinnedFramesOrOtherColumns) {

@@ -1,5 +1,6 @@
 #include "moclean/formats/npy.hpp"
 
+#include <cstdint>
 #include <limits>
 #include <string>
 
@@ -204,6 +205,21 @@ TEST(NpyAgain, WritesAPartOfTheFrames) {
 
   EXPECT_EQ(rewritten(file, last_two),
             npy_head({'<', 'i', 4}, {2, 1, 2}) + bytes<std::int32_t>({3, 4, 5, 6}));
+}
+
+// Confidences that are all 0 are not used: in a part of the frames they tell nothing.
+TEST(NpyAgain, KeepsPointsMissingInAPartWhereNoConfidenceIsAboveZero) {
+  for (const bool is_real : {true, false}) {
+    const std::initializer_list<double> points = {1, 2, 3, 0, 4, 5, 6, 1};
+    const Recording take =
+        read(is_real ? npy(dictionary("<f8", false, "(2, 1, 4)"), bytes<double>(points))
+                     : npy(dictionary("<i4", false, "(2, 1, 4)"), bytes<std::int32_t>(points)));
+    ASSERT_EQ(take.samples.cols(), 3);
+
+    const Recording back = read(npy_text(excerpt(take, 0, 1)));
+
+    EXPECT_TRUE(back.samples.leftCols(3).array().isNaN().all());
+  }
 }
 
 TEST(NpyAgain, KeepsMarksOfMissingSamplesThatStayMissing) {

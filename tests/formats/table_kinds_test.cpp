@@ -161,5 +161,16 @@ TEST(TableNumbers, OfInfiniteSizeAreRefusedByLine) {
   EXPECT_EQ(table("A.x,A.y,error\n1,2,inf\n").frames(), 1);  // passes through
 }
 
+// Confidences that are all 0 are not used: in a part of the frames they tell nothing.
+TEST(TableConfidences, KeepAPointMissingInAPartWhereNoneIsAboveZero) {
+  const Recording take = table("A_x,A_y,A_score\n1,2,0\n3,4,0\n5,6,1\n");
+
+  const std::string part = written_again(excerpt(take, 0, 2));
+
+  EXPECT_EQ(part, "A_x,A_y,A_score\n,,0\n,,0\n");
+  EXPECT_TRUE(table(part).samples.array().isNaN().all());
+  EXPECT_EQ(written_again(excerpt(take, 1, 3)), "A_x,A_y,A_score\n3,4,0\n5,6,1\n");
+}
+
 }  // namespace
 }  // namespace moclean

@@ -239,6 +239,28 @@ TEST(Table, KeepsASpreadsheetFromExecutingNames) {
   EXPECT_EQ(table(text).columns, recording.columns);
 }
 
+TEST(Table, WritesNamesThatAreAllNumbersSoThatTheyAreNoRow) {
+  const Recording recording{Matrix{{5, 6, 7}}, {"1", "-2.5", "nan"}, 0, ""};
+
+  const std::string text = written_again(recording);
+
+  EXPECT_EQ(text, "\"'1\",\"'-2.5\",nan\n5,6,7\n");
+  EXPECT_EQ(table(text).columns, recording.columns);
+  EXPECT_EQ(table(text).samples, recording.samples);
+}
+
+TEST(Table, TakesRowNamesOfRForNoSamplesEvenIfTheyDoNotCount) {
+  EXPECT_EQ(table("a,b\n1,5,2\n").samples, (Matrix{{5, 2}}));
+  EXPECT_EQ(table("a,b\n1,5,2\n7,6,3\n3,6,4\n").samples, (Matrix{{5, 2}, {6, 3}, {6, 4}}));
+}
+
+TEST(Table, ReadsOneRowOfWordsUnderNamesInAComment) {
+  const Recording recording = table("# A.x A.y A.z\n4 5 6\n");
+
+  EXPECT_THAT(recording.columns, ElementsAre("A.x", "A.y", "A.z"));
+  EXPECT_EQ(recording.samples, (Matrix{{4, 5, 6}}));
+}
+
 TEST(Table, PassesTextThroughAndRefusesItAmongNumbers) {
   EXPECT_THAT(table("a,who\n1,me\n2,you\n").columns, ElementsAre("a"));
   EXPECT_THAT(table("clock,A.x,A.y\n10:00,1,2\n10:01,1,2\n").notes.passed_through,

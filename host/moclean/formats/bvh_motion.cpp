@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -103,8 +104,9 @@ class BvhMotionParser {
     document_.time_word = next_word();
     double seconds = 0;
     if (!scanner_.accept_number(seconds)) scanner_.fail_number();
-    if (seconds > 0) document_.frame_time = seconds;
-    if (!(seconds > 0) && rate == 0)
+    const bool is_time = seconds > 0 && std::isfinite(1 / seconds);
+    if (is_time) document_.frame_time = seconds;
+    if (!is_time && rate == 0)
       scanner_.fail("expected a positive frame time (--rate states the rate of a file without)");
     scanner_.expect_line_end();
   }
@@ -152,6 +154,18 @@ class BvhMotionParser {
     }
   }
 
+  // Then a frame may be over several lines even if the first one is not.
+  bool numbers_fill_stated_frames() {
+    if (!fills_stated_) {
+      const auto width = static_cast<Index>(scales_.size());
+      Index words = 0;
+      WordsOfLines lines(text_.substr(document_.rows));
+      while (const std::size_t own = lines.next(scales_.size())) words += static_cast<Index>(own);
+      fills_stated_ = words % width == 0 && words / width == document_.stated_frames;
+    }
+    return *fills_stated_;
+  }
+
   void frames() {
     RowCollector rows(static_cast<Index>(scales_.size()));
     Index whole = 0;
@@ -189,7 +203,7 @@ class BvhMotionParser {
     for (std::size_t c = 0; c < scales_.size(); ++c) {
       if (scanner_.at_line_end()) {
         if (breaks_off(c, line)) return false;
-        if (lines_per_frame_ == 1) fail_width_found(c);
+        if (lines_per_frame_ == 1 && !numbers_fill_stated_frames()) fail_width_found(c);
         scanner_.at_end();
       }
       double value = 0;
@@ -244,6 +258,7 @@ class BvhMotionParser {
   Index lines_per_frame_ = 1;
   std::size_t first_width_ = 0;  // words of the first line
   Index read_ = 0;               // whole frames so far
+  std::optional<bool> fills_stated_;
 };
 
 }  // namespace

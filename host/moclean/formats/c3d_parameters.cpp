@@ -173,6 +173,8 @@ void C3dParameters::set(std::string_view group, std::string_view name,
       std::ranges::copy(numbers_.real_bytes(values[i]), bytes + 4 * i);
     else if (value->type == 2)
       std::ranges::copy(numbers_.word_bytes(static_cast<unsigned>(values[i])), bytes + 2 * i);
+    else if (value->type == 1)
+      bytes[i] = static_cast<char>(static_cast<unsigned char>(std::clamp(values[i], 0.0, 255.0)));
   }
 }
 

@@ -23,6 +23,12 @@ constexpr int coordinates_and_word = 4;
 // Manager 2.9) store -1 as 65535.
 bool is_invalid(double word) { return !(word >= 0 && word < 32768); }
 
+// Exactly at the origin and not measured. A negative zero is none: the Encoder writes it for a
+// point that is there.
+bool is_mark(double x, double y, double z, double word) {
+  return x == 0 && y == 0 && z == 0 && word == 0 && !std::signbit(x);
+}
+
 // Readers of one number at an address, as coordinates need it and as the word does.
 struct IntelReal {
   static constexpr std::size_t size = 4;
@@ -95,12 +101,6 @@ class Decoder {
     }
   }
 
-  // Exactly at the origin and not measured. A negative zero is none: put_c3d_samples() writes it
-  // for a point that is there.
-  static bool is_mark(double x, double y, double z, double word) {
-    return x == 0 && y == 0 && z == 0 && word == 0 && !std::signbit(x);
-  }
-
   void leave_origin(std::size_t p, Matrix& samples) const {
     for (Index f = 0; f < samples.rows(); ++f) {
       auto sample = samples.row(f).segment<3>(static_cast<Index>(3 * p));
@@ -136,7 +136,15 @@ class Encoder {
   void put(char* at, const double* sample) const {
     for (std::size_t i = 0; i < 3; ++i) number(at, i, sample[i] == 0 ? 0 : sample[i]);
     const bool at_origin = sample[0] == 0 && sample[1] == 0 && sample[2] == 0;
-    if (at_origin && layout_.is_float) number(at, 0, -0.0);
+    if (at_origin && has_negative_zero()) number(at, 0, -0.0);
+  }
+
+  // So that the point is there.
+  void put_origin(char* at) const {
+    if (has_negative_zero())
+      number(at, 0, -0.0);
+    else
+      put_word(at, 1);
   }
 
   void put_word(char* at, int word) const {
@@ -147,6 +155,10 @@ class Encoder {
   }
 
  private:
+  bool has_negative_zero() const {
+    return layout_.is_float && layout_.numbers.processor() != C3dProcessor::dec;
+  }
+
   void number(char* at, std::size_t place, double value) const {
     if (layout_.is_float) {
       if (std::abs(value) > layout_.numbers.largest())
@@ -177,6 +189,48 @@ bool is_same(const double* a, const double* b) {
   for (std::size_t i = 0; i < 3; ++i)
     if (!(a[i] == b[i] || (std::isnan(a[i]) && std::isnan(b[i])))) return false;
   return true;
+}
+
+// What a stored point is to the Decoder.
+enum class StoredPoint { invalid, at_origin, elsewhere };
+
+StoredPoint stored_point(const char* at, const C3dLayout& layout) {
+  const std::size_t size = layout.number_bytes();
+  std::array<double, coordinates_and_word> numbers{};
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    numbers[i] = layout.is_float ? layout.numbers.real(at + i * size)
+                                 : layout.numbers.integer(at + i * size);
+  const auto& [x, y, z, word] = numbers;
+  if (is_invalid(word)) return StoredPoint::invalid;
+  return is_mark(x, y, z, word) ? StoredPoint::at_origin : StoredPoint::elsewhere;
+}
+
+// Whether 0, 0, 0 is a place or means missing depends on the other frames, of which some have
+// changed or are left out: says again which it is for each frame of a point. A point that is there
+// gets a negative zero or, where numbers have none, a residual of one unit.
+void tell_origins(std::string& data, const C3dLayout& layout, Index point,
+                  const ConstMatrixRef& samples, Index column, const Encoder& encoder) {
+  const auto at = [&](Index f) {
+    const auto place =
+        static_cast<std::size_t>(f) * layout.frame_bytes() +
+        static_cast<std::size_t>(coordinates_and_word * point) * layout.number_bytes();
+    return data.data() + place;
+  };
+  std::vector<Index> at_origin;
+  bool elsewhere = false;
+  for (Index f = 0; f < samples.rows(); ++f) {
+    const StoredPoint stored = stored_point(at(f), layout);
+    if (stored == StoredPoint::at_origin) at_origin.push_back(f);
+    elsewhere = elsewhere || stored == StoredPoint::elsewhere;
+  }
+  for (const Index f : at_origin) {
+    const bool missing = is_missing(samples.row(f).data() + column);
+    if (missing == elsewhere) continue;
+    if (missing)
+      encoder.put_word(at(f), -1);
+    else
+      encoder.put_origin(at(f));
+  }
 }
 
 std::int64_t& count_of(C3dChanges& changes, bool was_missing, bool is_now_missing, Index point) {
@@ -228,6 +282,8 @@ C3dChanges put_c3d_samples(std::string& data, const C3dLayout& layout,
       std::memcpy(at, stored.data(), 4 * size);
       ++count_of(changes, was_missing, missing, coordinates[p]);
     }
+  for (std::size_t p = 0; p < coordinates.size(); ++p)
+    tell_origins(data, layout, coordinates[p], after, static_cast<Index>(3 * p), encoder);
   return changes;
 }
 

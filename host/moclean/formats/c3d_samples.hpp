@@ -26,8 +26,9 @@ struct C3dChanges {
 /// one of its frames. A point whose coordinates would be stored as they were keeps its bytes; any
 /// other gets those of `after` and residual and camera mask 0, which is what the format has for
 /// points that were not measured (c3d.org, "Notes for programmers"); one with a NaN becomes
-/// invalid: coordinates 0, residual -1. Throws FileError naming `file` for a number beyond what the
-/// layout can hold.
+/// invalid: coordinates 0, residual -1. Points at 0, 0, 0 without residual, which are missing only
+/// if they are elsewhere in other frames, stay what they are. Throws FileError naming `file` for a
+/// number beyond what the layout can hold.
 C3dChanges put_c3d_samples(std::string& data, const C3dLayout& layout,
                            const std::vector<Index>& coordinates, const ConstMatrixRef& before,
                            const ConstMatrixRef& after, const std::filesystem::path& file);

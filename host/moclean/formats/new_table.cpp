@@ -24,12 +24,18 @@ bool would_be_executed(const std::string& name) {
          !table_number(name, '.', value);
 }
 
-std::string header_cell(const std::string& name) {
-  const bool is_formula = would_be_executed(name);
-  if (!is_formula && name.find_first_of(",;\t\"#'") == std::string::npos &&
-      !name.starts_with(' ') && !name.ends_with(' '))
+// A line of nothing else is a row of samples to every reader.
+bool is_number_or_missing(const std::string& name) {
+  double value = 0;
+  return table_number(name, '.', value) || table_number(name, ',', value) || says_missing(name);
+}
+
+std::string header_cell(const std::string& name, bool are_numbers) {
+  const bool has_mark = would_be_executed(name) || (are_numbers && !says_missing(name));
+  if (!has_mark && name.find_first_of(",;\t\"#'") == std::string::npos && !name.starts_with(' ') &&
+      !name.ends_with(' '))
     return name;
-  std::string cell = is_formula ? "'" : "";
+  std::string cell = has_mark ? "'" : "";
   for (const char c : name) cell.append(c == '"' ? 2 : 1, c);
   return fmt::format("\"{}\"", cell);
 }
@@ -39,9 +45,10 @@ std::string new_table_head(const Recording& clip, char separator) {
   if (clip.frame_rate > 0) text += fmt::format("# frame_rate: {}\n", clip.frame_rate);
   if (!clip.unit.empty()) text += fmt::format("# unit: {}\n", clip.unit);
   if (clip.up) text += fmt::format("# up: {}\n", "xyz"[static_cast<int>(*clip.up)]);
+  const bool are_numbers = std::ranges::all_of(clip.columns, is_number_or_missing);
   for (std::size_t c = 0; c < clip.columns.size(); ++c) {
     if (c > 0) text += separator;
-    text += header_cell(clip.columns[c]);
+    text += header_cell(clip.columns[c], are_numbers);
   }
   return text + "\n";
 }

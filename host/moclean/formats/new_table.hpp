@@ -9,8 +9,8 @@ namespace moclean {
 /// rate, unit and upward axis, a line of names, the shortest text for every number, `nan` for any
 /// NaN. A name that a spreadsheet would execute (it begins with `=`, `+`, `-` or `@` and is no
 /// number) gets an apostrophe before it and quotes around it, as OWASP advises against CSV
-/// injection; read_table() takes the apostrophe off again. Throws FileError for a name with a line
-/// break.
+/// injection; so do names that are all numbers, which would be a row of samples. read_table() takes
+/// the apostrophe off again. Throws FileError for a name with a line break.
 void write_new_table(AtomicFile& file, const Recording& recording, char separator);
 
 }  // namespace moclean

@@ -70,6 +70,7 @@ class NpyRewriter {
             static_cast<Index>(c));
     }
     if (document.content) places_ = places_of(document.array);
+    zero_is_missing_ = has_other_confidence();
     type_ = written_type();
   }
 
@@ -87,6 +88,15 @@ class NpyRewriter {
 
  private:
   std::size_t width() const { return document_.array.count() / document_.array.shape[0]; }
+
+  // Where every confidence is 0, as may be in a part of the frames, nobody takes it for missing.
+  bool has_other_confidence() const {
+    for (std::size_t c = 0; c < width(); ++c)
+      for (Index f = 0; f < samples_.rows() && !judged_by_[c].empty(); ++f)
+        if (const double confidence = number(f, c); confidence != 0 && !std::isnan(confidence))
+          return true;
+    return false;
+  }
 
   // Integers cannot say that a sample is missing, unless the file says so itself.
   NpyType written_type() const {
@@ -112,7 +122,9 @@ class NpyRewriter {
 
   bool was_missing(Index frame, std::size_t column, Index sample) const {
     const Index confidence = document_.confidences[static_cast<std::size_t>(sample)];
-    if (confidence >= 0 && number(frame, static_cast<std::size_t>(confidence)) == 0) return true;
+    if (confidence >= 0 && zero_is_missing_ &&
+        number(frame, static_cast<std::size_t>(confidence)) == 0)
+      return true;
     return std::ranges::find(document_.missing, number(frame, column)) != document_.missing.end();
   }
 
@@ -150,6 +162,7 @@ class NpyRewriter {
   std::vector<Index> sample_of_;               // per column of the array, or -1
   std::vector<std::vector<Index>> judged_by_;  // samples, per column that is their confidence
   NpyPlaces places_;
+  bool zero_is_missing_ = false;  // as a confidence
 };
 
 Recording read_npy(std::string_view content, const std::filesystem::path& file,

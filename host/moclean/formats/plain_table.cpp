@@ -99,7 +99,9 @@ char separator_between(std::string_view names, const std::vector<std::string_vie
   const std::size_t words = count_cells(names, between_words);
   const std::size_t cells = count_cells(row, between_words);
   const bool are_words =
-      words > 1 && (words == cells || words + 1 == cells) && are_numbers(row, between_words);
+      words > 1 &&
+      (rows.empty() ? are_numbers(names, between_words)  // one row, names in a comment
+                    : (words == cells || words + 1 == cells) && are_numbers(row, between_words));
   return are_words ? between_words : ',';
 }
 
@@ -117,6 +119,8 @@ class PlainHead {
     shape_.least_cells = named_columns(names_);
     shape_.roles.names = names_;
     shape_.roles = recognise_columns(names_, first_values(table_.text, shape_, names_.size()));
+    if (has_row_names_ && shape_.roles.roles[0] != ColumnRole::index)
+      shape_.roles.roles[0] = ColumnRole::other;  // they need not count
     units();
     const TableSurvey survey = survey_rows(table_.text, shape_, 32);
     if (survey.with_comma > 0 && survey.with_point == 0) shape_.decimal = ',';
@@ -198,9 +202,10 @@ class PlainHead {
       return;
     }
     names_ = cells_of_line(line, shape_.separator);
-    // A name that our own writer kept from being executed by a spreadsheet.
+    // A name that our own writer kept from being executed by a spreadsheet, or taken for a number.
     for (std::string& name : names_)
-      if (name.size() > 1 && name[0] == '\'' && std::string_view("=+-@").find(name[1]) != name.npos)
+      if (name.size() > 1 && name[0] == '\'' &&
+          (std::string_view("=+-@").find(name[1]) != name.npos || is_number_cell(name.substr(1))))
         name.erase(0, 1);
     rows_behind();
   }
@@ -277,8 +282,8 @@ class PlainHead {
     TextLines after = lines_;
     if (!next_part(after)) return;
     const std::vector<std::string> row = cells_of_line(after.line(), shape_.separator);
-    if (row.size() == names_.size() + 1 && !row.back().empty() && row.front() == "1")
-      names_.insert(names_.begin(), "");
+    has_row_names_ = row.size() == names_.size() + 1 && !row.back().empty() && row.front() == "1";
+    if (has_row_names_) names_.insert(names_.begin(), "");
   }
 
   // A line of units under the names.
@@ -322,7 +327,7 @@ class PlainHead {
   const TableText& table_;
   TextLines lines_;
   TableShape shape_;
-  bool has_line_ = false;
+  bool has_line_ = false, has_row_names_ = false;
   char stated_separator_ = 0;
   std::string_view comment_;  // the last one before the names
   std::vector<std::string> names_, units_;

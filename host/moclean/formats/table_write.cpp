@@ -46,6 +46,7 @@ class TableWriter {
         judged_.push_back({static_cast<std::size_t>(std::ranges::find(columns_, point.columns[0]) -
                                                     columns_.begin()),
                            point.columns.size(), *point.confidence});
+    zero_is_missing_ = has_other_confidence();
   }
 
   void write() {
@@ -63,6 +64,26 @@ class TableWriter {
     bool is_quoted = false;
     double number = nothing;
   };
+
+  // Where every confidence is 0, as may be in a part of the frames, nobody takes it for missing.
+  bool has_other_confidence() const {
+    const bool has_all = recording_.frames() == document_.frames;
+    if (has_all || judged_.empty()) return has_all;
+    const std::string_view text = document_.content.text;
+    Index frame = -first_;
+    for (TextLines lines(text.substr(0, shape_.rows_end), shape_.rows); lines.next();) {
+      if (is_no_row(lines.line(), shape_.separator) || frame++ < 0) continue;
+      if (frame > recording_.frames()) break;
+      std::size_t column = 0;
+      for (TableCells cells(lines.line(), shape_.separator); cells.next(); ++column) {
+        double value = 0;
+        if (std::ranges::find(judged_, column, &JudgedPoint::confidence) != judged_.end() &&
+            table_number(cells.text(), shape_.decimal, value) && value != 0 && !std::isnan(value))
+          return true;
+      }
+    }
+    return false;
+  }
 
   void flush() {
     file_.write(text_is_unicode_ ? encoded(text_, document_.content.encoding) : text_);
@@ -150,7 +171,7 @@ class TableWriter {
   void observed_before() {
     for (std::size_t s = 0; s < columns_.size(); ++s) before_[s] = cells_[columns_[s]].number;
     for (const auto& [first, count, confidence] : judged_)
-      if (cells_[confidence].number == 0)
+      if (zero_is_missing_ && cells_[confidence].number == 0)
         std::fill_n(before_.begin() + static_cast<std::ptrdiff_t>(first), count, nothing);
     if (document_.missing.empty()) return;
     for (const Joint& joint : joints_) {
@@ -201,6 +222,7 @@ class TableWriter {
   std::vector<std::size_t> columns_;  // of the file, per sample
   std::vector<Joint> joints_;
   std::vector<JudgedPoint> judged_;
+  bool zero_is_missing_ = true;  // as a confidence
   std::vector<double> before_;
   std::vector<Cell> cells_;
   std::vector<std::pair<std::size_t, std::size_t>> changes_;  // column, sample or is_confidence

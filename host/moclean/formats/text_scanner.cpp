@@ -25,7 +25,9 @@ bool is_decimal_digit(char c) { return c >= '0' && c <= '9'; }
 // `1.#IND`, `-1.#QNAN00` and their like.
 bool is_microsoft_nan(std::string_view word) {
   if (word.starts_with('-') || word.starts_with('+')) word.remove_prefix(1);
-  return word.starts_with("1.#IND") || word.starts_with("1.#QNAN") || word.starts_with("1.#SNAN");
+  for (const std::string_view known : {"1.#IND", "1.#QNAN", "1.#SNAN"})
+    if (word.starts_with(known)) return word.find_first_not_of('0', known.size()) == word.npos;
+  return false;
 }
 
 // Whether a sign or a second point stands in a word where only the next number can have it.
