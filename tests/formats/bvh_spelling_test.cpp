@@ -119,6 +119,15 @@ TEST(BvhLines, BeyondTheStatedFramesAreFramesAndCounted) {
   EXPECT_EQ(written(recording), hierarchy + header + rows);
 }
 
+// Found by fuzzing: the part of such a file could not be read again.
+TEST(BvhLines, MayWrapAfterTheFirstWithWordsBehindThem) {
+  const Recording recording =
+      read_text(hierarchy + header + "1.5 2 0 0\n3 4\n90 -1.25\nYposition\n");
+
+  EXPECT_LE(largest_difference(recording.samples, positions), 1e-12);
+  EXPECT_EQ(recording.frames(), 2);
+}
+
 TEST(BvhLines, FewerThanStatedAreReadWithAWordOfBothCounts) {
   const Recording recording =
       read_text(hierarchy + "MOTION\nFrames: 999999999999\nFrame Time: 0.01\n" + rows);

@@ -57,6 +57,17 @@ TEST_F(Storages, OfOpenSimMayHaveGoneThroughASpreadsheet) {
             replaced(replaced(text, "nRows=2", "nRows=1"), "0.01,1.6,2,3\n", ""));
 }
 
+// Found by fuzzing: the place of a count that is not there was none in the file.
+TEST_F(Storages, WithoutACountGetOneWhereItWouldStand) {
+  const std::string text =
+      "Coordinates\nnRows=\ninDegrees=yes\nendheader\ntime\telbow\n0\t1.5\n0.01\t1.6\n";
+  const Recording recording = read("a.mot", text);
+
+  EXPECT_EQ(write("b.mot", recording), text);
+  EXPECT_EQ(write("b.mot", excerpt(recording, 0, 1)),
+            replaced(replaced(text, "nRows=", "nRows=1"), "0.01\t1.6\n", ""));
+}
+
 // One point among joint angles is no reason to leave these out.
 TEST_F(Storages, OfOpenSimHaveChannelsWhereMostAreNoPoints) {
   const std::string head = "x\nendheader\n";

@@ -40,6 +40,12 @@ class WordsOfLines {
     return words;
   }
 
+  // Whether there is a line, and it begins like a number.
+  bool begins_number() {
+    skip(" \t\r\n");
+    return rest_.find_first_of("+-.0123456789") == 0;
+  }
+
  private:
   void skip(std::string_view blanks) {
     rest_.remove_prefix(std::min(rest_.find_first_not_of(blanks), rest_.size()));
@@ -160,7 +166,7 @@ class BvhMotionParser {
       const auto width = static_cast<Index>(scales_.size());
       Index words = 0;
       WordsOfLines lines(text_.substr(document_.rows));
-      while (const std::size_t own = lines.next(scales_.size())) words += static_cast<Index>(own);
+      while (lines.begins_number()) words += static_cast<Index>(lines.next(scales_.size()));
       fills_stated_ = words % width == 0 && words / width == document_.stated_frames;
     }
     return *fills_stated_;

@@ -60,8 +60,7 @@ class QtmHead {
         has_row_ = true;
         return;
       }
-      cells.next();
-      setting(name, cells.text());
+      if (cells.next()) setting(name, cells.text());
     }
   }
 

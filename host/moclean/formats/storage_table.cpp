@@ -19,7 +19,7 @@ constexpr std::size_t longest_head = 200;  // lines
 
 std::string_view without_space(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
+  if (first == std::string_view::npos) return text.substr(text.size());  // a place all the same
   return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
