@@ -1,6 +1,10 @@
 #pragma once
 
+#include <algorithm>
+#include <cctype>
+#include <functional>
 #include <memory>
+#include <ostream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -35,6 +39,22 @@ inline std::vector<Cleaner> every_cleaner() {
       all.push_back({std::string(name), BackendKind::opencl_cpu});
   }
   return all;
+}
+
+inline bool is_low_rank(const Cleaner& cleaner) {
+  const Chain chain = parse_chain(cleaner.chain);
+  return first_low_rank(chain) != nullptr;
+}
+
+/// A condition: that a cleaner is one of some steps.
+inline auto one_of(std::vector<std::string> chains) {
+  return [=](const Cleaner& cleaner) { return std::ranges::count(chains, cleaner.chain) > 0; };
+}
+
+inline std::vector<Cleaner> cleaners_that(const std::function<bool(const Cleaner&)>& match) {
+  std::vector<Cleaner> some = every_cleaner();
+  std::erase_if(some, std::not_fn(match));
+  return some;
 }
 
 /// For the names of test cases.

@@ -94,10 +94,6 @@ std::vector<Degenerate> degenerates() {
   };
 }
 
-bool is_low_rank(const Cleaner& cleaner) {
-  return first_low_rank(parse_chain(cleaner.chain)) != nullptr;
-}
-
 // Why a step may refuse a take: a part of the message, or nothing.
 std::string refusal(const Cleaner& cleaner, const Degenerate& take) {
   if (take.samples.array().isInf().any()) return "infinite at frame 8, column joint0.z";
@@ -155,16 +151,10 @@ TEST_P(ConstantTakes, StayAsTheyAre) {
 }
 
 // svt shrinks what it keeps, completion and tslra stop at their tolerance.
-std::vector<Cleaner> that_keep_constants() {
-  std::vector<Cleaner> some = every_cleaner();
-  std::erase_if(some, [](const Cleaner& c) {
-    return c.chain == "svt" || c.chain == "completion" || c.chain == "tslra";
-  });
-  return some;
-}
-
-INSTANTIATE_TEST_SUITE_P(Of, ConstantTakes, ::testing::ValuesIn(that_keep_constants()),
-                         [](const auto& test) { return name_of(test.param); });
+INSTANTIATE_TEST_SUITE_P(
+    Of, ConstantTakes,
+    ::testing::ValuesIn(cleaners_that(std::not_fn(one_of({"svt", "completion", "tslra"})))),
+    [](const auto& test) { return name_of(test.param); });
 
 }  // namespace
 }  // namespace moclean::test

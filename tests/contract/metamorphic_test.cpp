@@ -1,7 +1,6 @@
 // What a change of the take does to the result, whatever the right result is: every step, on both
 // backends. Defaults throughout.
 
-#include <algorithm>
 #include <functional>
 
 #include <gmock/gmock.h>
@@ -95,21 +94,6 @@ TEST_P(Shifted, AJointThatStandsStillHasNoSay) {
   const Matrix found = motion(beside(samples_, still));
   EXPECT_TRUE(same_bits(found.leftCols(samples_.cols()), expected_));
   EXPECT_LE(change(found.rightCols(3), still), tolerance::metamorphic());
-}
-
-std::vector<Cleaner> cleaners_that(const std::function<bool(const Cleaner&)>& match) {
-  std::vector<Cleaner> some = every_cleaner();
-  std::erase_if(some, std::not_fn(match));
-  return some;
-}
-
-auto one_of(std::vector<std::string> chains) {
-  return [=](const Cleaner& cleaner) { return std::ranges::count(chains, cleaner.chain) > 0; };
-}
-
-bool is_low_rank(const Cleaner& cleaner) {
-  const Chain chain = parse_chain(cleaner.chain);
-  return first_low_rank(chain) != nullptr;
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, Shifted, ::testing::ValuesIn(cleaners_that(std::not_fn(is_low_rank))),
