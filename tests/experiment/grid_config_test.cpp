@@ -1,10 +1,13 @@
 #include "moclean/experiment/grid_config.hpp"
 
+#include <array>
+
 #include <gmock/gmock.h>
 
 #include "moclean/core/error.hpp"
 #include "moclean/formats/read_write.hpp"
 
+#include "experiment/grid_text.hpp"
 #include "formats/temporary_folder.hpp"
 #include "support/synthetic_walk.hpp"
 
@@ -14,32 +17,6 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
-
-const char* const whole = R"(seeds = [3, 1]
-columns_exclude = ["hand"]
-
-[[take]]
-file = "walk.npy"
-frames = "2:8"
-rate = 60
-columns_exclude = ["Toe"]
-
-[[take]]
-file = "${PLACE:-nowhere}/run.npy"
-label = "run"
-optional = true
-
-[[noise]]
-spec = "gap:count=1,length=3+gaussian-frames:fraction=0.5"
-label = "both"
-
-[[method]]
-spec = "none"
-
-[[method]]
-spec = "hampel:window=5+slra:rho=1.7"
-label = "chain"
-)";
 
 class GridFile : public ::testing::Test {
  protected:
@@ -53,9 +30,9 @@ class GridFile : public ::testing::Test {
         << text;
   }
 
-  // `whole` with one part replaced.
+  // `grid_text` with one part replaced.
   static std::string with(const std::string& part, const std::string& other) {
-    std::string text = whole;
+    std::string text = grid_text;
     return text.replace(text.find(part), part.size(), other);
   }
 
@@ -63,7 +40,7 @@ class GridFile : public ::testing::Test {
 };
 
 TEST_F(GridFile, IsReadWithEveryKey) {
-  const GridConfig config = read(whole);
+  const GridConfig config = read(grid_text);
 
   EXPECT_THAT(config.seeds, ElementsAre(3, 1));
   ASSERT_EQ(config.takes.size(), 2U);
@@ -93,7 +70,7 @@ TEST_F(GridFile, PathsMayNameTheEnvironment) {
     return std::string(name) == "PLACE" ? "/data" : nullptr;
   };
 
-  EXPECT_EQ(read(whole, environment).takes[1].file, "/data/run.npy");
+  EXPECT_EQ(read(grid_text, environment).takes[1].file, "/data/run.npy");
   expect_refused(with("${PLACE:-nowhere}", "${MOCLEAN_NOT_SET}"),
                  "11: take 2: file: the environment variable MOCLEAN_NOT_SET is not set");
   expect_refused(with("${PLACE:-nowhere}", "${PLACE"), "11: take 2: file: expected } after ${");
@@ -136,14 +113,16 @@ TEST_F(GridFile, ErrorsNameLineKeyAndWhatWasExpected) {
 TEST_F(GridFile, LettersBeyondAsciiStandInQuotesAndComments) {
   expect_refused("seeds = 2\n# é\ngröße = 1\n",
                  "3: expected letters of ASCII outside of quotes, found 'öße'");
-  for (const char* quoted : {"\"\\\"é\" # é", "'é\"'", "\"\"\"\né\" \"\"\"\"\"", "'''é'\n'''''"})
+  constexpr std::array quoted_ways = {"\"\\\"é\" # é", "'é\"'", "\"\"\"\né\" \"\"\"\"\"",
+                                      "'''é'\n'''''"};
+  for (const char* quoted : quoted_ways)
     EXPECT_NE(read(with("\"both\"", quoted)).noises.at(0).label.find("é"), std::string::npos)
         << quoted;
 }
 
 TEST_F(GridFile, TakesAreReadAndCut) {
   write_recording(folder_.path() / "walk.npy", synthetic_walk(20));
-  const GridConfig config = read(whole);
+  const GridConfig config = read(grid_text);
 
   const GridTakes found = read_takes(config);
 
@@ -177,7 +156,7 @@ TEST_F(GridFile, TakesThatCannotServeAreRefused) {
   walk.samples(3, 5) = std::nan("");
   write_recording(folder_.path() / "walk.npy", walk);
 
-  EXPECT_THAT([&] { read_takes(read(whole)); },
+  EXPECT_THAT([&] { read_takes(read(grid_text)); },
               ThrowsMessage<FileError>(HasSubstr("walk.npy: frame 3, column joint1.z is nan")));
   EXPECT_THAT([&] { read_takes(read(with("2:8", "2:21"))); },
               ThrowsMessage<FileError>(HasSubstr("grid.toml:4: frames 2:21 do not fit")));

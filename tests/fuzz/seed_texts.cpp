@@ -53,32 +53,18 @@ frames = "0:40"
 columns = "t,(xyz)*"
 )";
 
-const std::string_view grid_text = R"(seeds = [3, 1]
-columns_exclude = ["hand"]
+const std::string_view other_grid = R"(seeds = 2
 
 [[take]]
-file = "walk.npy"
-frames = "2:8"
-rate = 60
+file = "${PLACE:-nowhere}/${PLACE}walk.npy"
 thin = 2
 skeleton = "walk.asf"
-columns_exclude = ["Toe"]
-
-[[take]]
-file = "${PLACE:-nowhere}/${PLACE}run.npy"
-label = "run"
-optional = true
 
 [[noise]]
-spec = "gap:count=1,length=3+gaussian-frames:fraction=0.5"
-label = "both"
+spec = "gap:count=1,length=3"
 
 [[method]]
 spec = "none"
-
-[[method]]
-spec = "hampel:window=5+slra:rho=1.7"
-label = "one"
 )";
 
 const std::string_view cells_text =
@@ -88,7 +74,8 @@ const std::string_view cells_text =
     "\n";
 
 const std::string_view manifest_text =
-    R"({"output":"take.csv","input":"/in/take.bvh","input_hash":"0123456789abcdef","input_size":12,)"
+    R"({"output":"take.csv","input":"/in/take.bvh",)"
+    R"("input_hash":"0123456789abcdef","input_size":12,)"
     R"("version":"0.1.0","parameters":{"method":"none"},"outputs":{"take.csv":"0123456789abcdef",)"
     R"("take.mask.csv":"0123456789abcdef"}})"
     "\n"

@@ -10,7 +10,10 @@ namespace moclean::fuzz {
 /// Two roots, names that come twice, all six channels, decimal commas, a frame over two lines.
 extern const std::string_view other_bvh;
 
-extern const std::string_view cells_text, config_text, grid_text, manifest_text, tuning_text;
+/// What test::grid_text has not.
+extern const std::string_view other_grid;
+
+extern const std::string_view cells_text, config_text, manifest_text, tuning_text;
 
 /// One or more tables of each dialect (docs/formats.md).
 std::vector<std::string> table_texts();

@@ -10,6 +10,7 @@
 #include "moclean/formats/format.hpp"
 #include "moclean/formats/npz.hpp"
 
+#include "experiment/grid_text.hpp"
 #include "formats/c3d_maker.hpp"
 #include "formats/npy_maker.hpp"
 #include "formats/tiny_files.hpp"
@@ -91,7 +92,7 @@ Contents made_for(std::string_view target) {
   if (target == "columns") return column_texts();
   if (target == "config") return texts({config_text});
   if (target == "csv" || target == "tsv") return table_texts();
-  if (target == "grid") return texts({grid_text});
+  if (target == "grid") return texts({test::grid_text, other_grid});
   if (target == "manifest") return texts({manifest_text});
   if (target == "method") return method_texts();
   if (target == "mot") return texts({test::tiny_mot});
